@@ -1,0 +1,8 @@
+//! The discretised continuum, §2-3 of the paper: what particles and nodes
+//! carry, the pointwise laws, the table of shape functions, and the sums that
+//! move quantities between the two.
+
+pub mod law;
+pub mod shape;
+pub mod state;
+pub mod sums;

@@ -1,0 +1,102 @@
+//! What particles and nodes carry (§2, Table 1, and §3.3).
+//!
+//! One array per symbol of the paper; the index is the subscript, so `m_p` is
+//! `particle.m[p]` and `m_I` is `node.m[I]`. Positions are measured from the
+//! body's lower corner, so moving a scene in space changes no digit.
+
+use super::shape::Shape;
+use nalgebra::{SMatrix, SVector};
+
+// ANCHOR: particles
+/// Material points: everything that is remembered from step to step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Particles<const D: usize> {
+    /// m_p, mass [kg].
+    pub m: Vec<f64>,
+    /// x_p, position [m].
+    pub x: Vec<SVector<f64, D>>,
+    /// v_p, velocity [m/s].
+    pub v: Vec<SVector<f64, D>>,
+    /// ρ_p, density [kg/m³].
+    pub rho: Vec<f64>,
+    /// σ_p, Cauchy stress [Pa].
+    pub sigma: Vec<SMatrix<f64, D, D>>,
+    /// Δε_p, strain increment of the step [–].
+    pub d_eps: Vec<SMatrix<f64, D, D>>,
+}
+// ANCHOR_END: particles
+
+// ANCHOR: nodes
+/// Grid points: scratch paper, wiped in step 2 of every time step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nodes<const D: usize> {
+    /// m_I, lumped mass [kg].
+    pub m: Vec<f64>,
+    /// p_I, momentum [kg m/s].
+    pub p: Vec<SVector<f64, D>>,
+    /// v_I = p_I / m_I, velocity [m/s].
+    pub v: Vec<SVector<f64, D>>,
+    /// f_I, force [N].
+    pub f: Vec<SVector<f64, D>>,
+}
+// ANCHOR_END: nodes
+
+/// Particles, nodes, and the table of shape functions between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State<const D: usize> {
+    pub particle: Particles<D>,
+    pub node: Nodes<D>,
+    pub shape: Shape<D>,
+}
+
+impl<const D: usize> Particles<D> {
+    /// Bytes of state that one particle carries: 48 in 1D, where every tensor
+    /// is a single number.
+    pub const BYTES: usize = 2 * size_of::<f64>()
+        + 2 * size_of::<SVector<f64, D>>()
+        + 2 * size_of::<SMatrix<f64, D, D>>();
+
+    /// Particles at rest and free of stress at positions `x` [m], each with
+    /// mass `m` [kg] and density `rho` [kg/m³].
+    pub fn at_rest(x: Vec<SVector<f64, D>>, m: f64, rho: f64) -> Self {
+        let n = x.len();
+        Particles {
+            m: vec![m; n],
+            x,
+            v: vec![SVector::zeros(); n],
+            rho: vec![rho; n],
+            sigma: vec![SMatrix::zeros(); n],
+            d_eps: vec![SMatrix::zeros(); n],
+        }
+    }
+
+    /// N_p, the number of particles.
+    pub fn len(&self) -> usize {
+        self.m.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.m.is_empty()
+    }
+}
+
+impl<const D: usize> Nodes<D> {
+    /// `n` nodes that carry nothing.
+    pub fn blank(n: usize) -> Self {
+        Nodes {
+            m: vec![0.0; n],
+            p: vec![SVector::zeros(); n],
+            v: vec![SVector::zeros(); n],
+            f: vec![SVector::zeros(); n],
+        }
+    }
+
+    /// N_n, the number of nodes.
+    pub fn len(&self) -> usize {
+        self.m.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.m.is_empty()
+    }
+}

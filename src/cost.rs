@@ -1,0 +1,32 @@
+//! What a run costs, counted instead of timed: the same on every machine.
+
+/// Deterministic cost counters of one run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Time steps taken.
+    pub steps: u64,
+    /// Points at which a basis was tabulated: one per particle and table.
+    pub basis_evaluations: u64,
+    /// Particle-node pairs in all tables together.
+    pub particle_node_pairs: u64,
+    /// Calls of the exponential function.
+    pub exponentials: u64,
+    /// Iterations of Newton's method.
+    pub newton_iterations: u64,
+    /// Bytes of state that one particle carries.
+    pub bytes_per_particle: u64,
+}
+
+impl Cost {
+    /// Every counter with its name, in the order of `cost.csv`.
+    pub fn named(&self) -> [(&'static str, u64); 6] {
+        [
+            ("steps", self.steps),
+            ("basis_evaluations", self.basis_evaluations),
+            ("particle_node_pairs", self.particle_node_pairs),
+            ("exponentials", self.exponentials),
+            ("newton_iterations", self.newton_iterations),
+            ("bytes_per_particle", self.bytes_per_particle),
+        ]
+    }
+}

@@ -1,0 +1,39 @@
+//! # lme-mpm
+//!
+//! The Material Point Method with local maximum-entropy shape functions,
+//! written to be read beside the paper it implements: Molinos, Navas, Pastor
+//! and Martín Stickle, *Suitability of the local-maximum entropy approximation
+//! under the Material Point Method framework for dynamic problems*.
+//!
+//! Data flows one way: scene → state → (step, step, …) → history → measure →
+//! picture.
+//!
+//! | paper | module | tests |
+//! |---|---|---|
+//! | §3.1, (2) (3) (17) | [`continuum::law`] | `tests/laws.rs` |
+//! | §3.3, (12)-(16) (18) (19) | [`continuum::sums`], [`continuum::shape`] | `tests/laws.rs` |
+//! | §3.3, N_I and its table | [`basis`], [`grid`] | `tests/laws.rs` |
+//! | §4, (27)-(29) and the Algorithm | [`time::newmark`], [`time::steps`] | `tests/convergence.rs`, `tests/regression.rs` |
+//! | §6, (39) | [`measure`] | `tests/analytical.rs` |
+//! | App. A, (40)-(59) | [`exact::riemann`] | `tests/analytical.rs` |
+//! | doubts and misprints | [`reading`] | `tests/convergence.rs` |
+//!
+//! Around the paper stand [`scene`] (what to compute), [`model`] and [`run`]
+//! (the time loop), [`history`], [`summary`] and [`figure`] (what comes out),
+//! [`cost`] (what it took) and [`fault`] (what can go wrong).
+
+pub mod basis;
+pub mod continuum;
+pub mod cost;
+pub mod exact;
+pub mod fault;
+pub mod figure;
+pub mod grid;
+pub mod history;
+pub mod measure;
+pub mod model;
+pub mod reading;
+pub mod run;
+pub mod scene;
+pub mod summary;
+pub mod time;

@@ -1,0 +1,148 @@
+//! From a scene to what the time loop needs: grid, law, boundary, Δt, and the
+//! state at k = 0.
+#![allow(non_snake_case)]
+
+use crate::basis::Basis;
+use crate::continuum::law::LinearElastic;
+use crate::continuum::shape::Shape;
+use crate::continuum::state::{Nodes, Particles, State};
+use crate::grid::Grid;
+use crate::scene::{Body, Scene};
+use crate::time::Integrator;
+use nalgebra::SVector;
+
+/// The fixed components of nodes, as pairs (I, i).
+pub type Fixed = [(usize, usize)];
+
+/// All that stays the same from step to step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model<const D: usize> {
+    pub grid: Grid<D>,
+    pub basis: Basis,
+    pub law: LinearElastic,
+    /// Node I has zero velocity component i.
+    pub fixed: Vec<(usize, usize)>,
+    pub integrator: Integrator,
+    /// Δt [s].
+    pub dt: f64,
+    /// N_t, the number of time steps.
+    pub steps: usize,
+}
+
+/// c = √((λ + 2μ) / ρ) [m/s], the speed of a plane wave, (46) in the bar.
+pub fn wave_speed(body: &Body) -> f64 {
+    let law = LinearElastic::new(body.youngs_modulus, body.poisson_ratio);
+    libm::sqrt(law.p_wave_modulus() / body.density)
+}
+
+impl Scene {
+    /// The smallest spacing [m].
+    fn spacing(&self) -> f64 {
+        let per_axis = self.body.length.iter().zip(&self.grid.cells);
+        per_axis.map(|(length, cells)| length / *cells as f64).fold(f64::INFINITY, f64::min)
+    }
+
+    /// N_t: as many equal steps as keep c Δt / h at or below `time.cfl`.
+    ///
+    /// A count within 1e-9 of a whole number is that number, so that an end
+    /// given to ten digits does not cost a step.
+    fn step_count(&self) -> f64 {
+        let count = self.time.end * wave_speed(&self.body) / (self.time.cfl * self.spacing());
+        let whole = libm::round(count);
+        let close = (count - whole).abs() <= 1e-9 * whole;
+        if close { whole } else { libm::ceil(count) }
+    }
+
+    /// Numbers of particles, nodes and time steps, before anything is built.
+    pub fn sizes(&self) -> (f64, f64, f64) {
+        let (mut particles, mut nodes) = (1.0, 1.0);
+        for d in 0..self.dimension() {
+            let cells = self.grid.cells[d] as f64;
+            let [before, after] = self.grid.beyond[d].map(|n| n as f64);
+            particles *= cells * self.grid.particles_per_cell[d] as f64;
+            nodes *= before + cells + after + 1.0;
+        }
+        (particles, nodes, self.step_count())
+    }
+
+    /// c Δt / h of the run, at or below `time.cfl`.
+    pub fn courant_number(&self) -> f64 {
+        wave_speed(&self.body) * self.time.end / (self.step_count() * self.spacing())
+    }
+}
+
+impl<const D: usize> Model<D> {
+    /// The model of a scene with D axes.
+    pub fn of(scene: &Scene) -> Self {
+        let axes = |list: &[usize]| std::array::from_fn(|d| list[d]);
+        let grid = Grid::over(
+            std::array::from_fn(|d| scene.body.length[d]),
+            axes(&scene.grid.cells),
+            std::array::from_fn(|d| scene.grid.beyond[d]),
+        );
+        let steps = scene.step_count();
+        Model {
+            fixed: fixed(scene, &grid),
+            grid,
+            basis: scene.basis,
+            law: LinearElastic::new(scene.body.youngs_modulus, scene.body.poisson_ratio),
+            integrator: scene.time.integrator,
+            dt: scene.time.end / steps,
+            steps: steps as usize,
+        }
+    }
+
+    /// The state at k = 0: particles at equal distances in every cell of the
+    /// body, each with an equal share of the cell's mass (unit thickness in
+    /// the missing directions), moving as its region says.
+    pub fn initial_state(&self, scene: &Scene) -> State<D> {
+        let per_cell: [usize; D] = std::array::from_fn(|d| scene.grid.particles_per_cell[d]);
+        let along: [usize; D] = std::array::from_fn(|d| scene.grid.cells[d] * per_cell[d]);
+        let count: usize = along.iter().product();
+        let mut x: Vec<SVector<f64, D>> = Vec::with_capacity(count);
+        for p in 0..count {
+            let mut rest = p;
+            x.push(SVector::from_fn(|d, _| {
+                let n = rest % along[d];
+                rest /= along[d];
+                let (cell, within) = (n / per_cell[d], n % per_cell[d]);
+                let xi = (within as f64 + 0.5) / per_cell[d] as f64;
+                (cell as f64 + xi) * self.grid.h[d]
+            }));
+        }
+        let share: f64 = (0..D).map(|d| self.grid.h[d] / per_cell[d] as f64).product();
+        let rho = scene.body.density;
+        let mut particle = Particles::at_rest(x, rho * share, rho);
+        for p in 0..particle.len() {
+            let x_p = particle.x[p].as_slice();
+            if let Some(region) = scene.initial_velocity.iter().find(|r| r.contains(x_p)) {
+                particle.v[p] = SVector::from_fn(|d, _| region.velocity[d]);
+            }
+        }
+        State {
+            particle,
+            node: Nodes::blank(self.grid.nodes()),
+            shape: Shape::default(),
+        }
+    }
+}
+
+/// Nodes on or beyond a side with fixed components.
+fn fixed<const D: usize>(scene: &Scene, grid: &Grid<D>) -> Vec<(usize, usize)> {
+    let mut fixed = Vec::new();
+    for I in 0..grid.nodes() {
+        let index = grid.index(I);
+        for i in 0..D {
+            let holds = (0..D).any(|axis| {
+                let [lower, upper] = &scene.boundary[axis];
+                let first = grid.before[axis];
+                let last = first + scene.grid.cells[axis];
+                (lower.fixed[i] && index[axis] <= first) || (upper.fixed[i] && index[axis] >= last)
+            });
+            if holds {
+                fixed.push((I, i));
+            }
+        }
+    }
+    fixed
+}

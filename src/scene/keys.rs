@@ -1,0 +1,113 @@
+//! The keys that a scene file may hold: the contract in one table.
+
+/// One key: its dotted path (entries of a list share one path), whether its
+/// table is incomplete without it, and what its value may be.
+pub struct Key {
+    pub path: &'static str,
+    pub required: bool,
+    pub allowed: &'static str,
+}
+
+const fn must(path: &'static str, allowed: &'static str) -> Key {
+    Key { path, required: true, allowed }
+}
+
+const fn may(path: &'static str, allowed: &'static str) -> Key {
+    Key { path, required: false, allowed }
+}
+
+const SIDE: &str = "\"fixed\" or \"free\", or one of them for each component, as in { x = \"fixed\" }";
+const COMPONENT: &str = "\"fixed\" or \"free\"";
+const BEYOND: &str = "a whole number of cells from 0 up; without it 0 beyond a fixed side, 1 beyond a free one";
+
+/// All keys, in the order in which a scene is read aloud.
+pub const KEYS: &[Key] = &[
+    must("title", "a text"),
+    must("method", "\"mpm\""),
+    must("mass", "\"lumped\""),
+    must("body", "a table"),
+    must("body.length", "a length above 0 in m, one for each axis: their number is the dimension, 1 to 3"),
+    may("body.origin", "the body's lower corner in m, one number for each axis; 0 without it"),
+    must("body.density", "a number above 0, in kg/m³"),
+    must("body.youngs_modulus", "a number above 0, in Pa"),
+    must("body.poisson_ratio", "a number ν with −1 < ν < 0.5"),
+    must("grid", "a table"),
+    must("grid.cells", "a whole number from 1 up over the body's length, one for each axis"),
+    must("grid.particles_per_cell", "a whole number from 1 to 64, one for each axis"),
+    may("grid.beyond", "a table of cells beyond the body, with the keys left, right, bottom, top, back, front"),
+    may("grid.beyond.left", BEYOND),
+    may("grid.beyond.right", BEYOND),
+    may("grid.beyond.bottom", BEYOND),
+    may("grid.beyond.top", BEYOND),
+    may("grid.beyond.back", BEYOND),
+    may("grid.beyond.front", BEYOND),
+    must("basis", "a table"),
+    must("basis.kind", "\"linear\""),
+    must("time", "a table"),
+    must("time.integrator", "\"newmark\""),
+    may("time.reading", "\"second-order\" (without it) or \"as-printed\", of step 8"),
+    must("time.cfl", "a number above 0: the largest c Δt / h"),
+    must("time.end", "a time above 0, in s"),
+    may("boundary", "a table of sides: left, right (x); bottom, top (y); back, front (z)"),
+    may("boundary.left", SIDE),
+    may("boundary.left.x", COMPONENT),
+    may("boundary.left.y", COMPONENT),
+    may("boundary.left.z", COMPONENT),
+    may("boundary.right", SIDE),
+    may("boundary.right.x", COMPONENT),
+    may("boundary.right.y", COMPONENT),
+    may("boundary.right.z", COMPONENT),
+    may("boundary.bottom", SIDE),
+    may("boundary.bottom.x", COMPONENT),
+    may("boundary.bottom.y", COMPONENT),
+    may("boundary.bottom.z", COMPONENT),
+    may("boundary.top", SIDE),
+    may("boundary.top.x", COMPONENT),
+    may("boundary.top.y", COMPONENT),
+    may("boundary.top.z", COMPONENT),
+    may("boundary.back", SIDE),
+    may("boundary.back.x", COMPONENT),
+    may("boundary.back.y", COMPONENT),
+    may("boundary.back.z", COMPONENT),
+    may("boundary.front", SIDE),
+    may("boundary.front.x", COMPONENT),
+    may("boundary.front.y", COMPONENT),
+    may("boundary.front.z", COMPONENT),
+    may("initial_velocity", "a list of regions, [[initial_velocity]]"),
+    must("initial_velocity.from", "the region's lower corner in m, inside the body, one number for each axis"),
+    must("initial_velocity.to", "the region's upper corner in m, above `from`, inside the body"),
+    must("initial_velocity.velocity", "a velocity in m/s, one number for each axis"),
+    may("probe", "a list of probes, [[probe]]"),
+    must("probe.name", "a name of letters, digits and _, used once"),
+    must("probe.quantity", "\"velocity\", \"stress\" or \"displacement\""),
+    may("probe.component", "in 2D and 3D: x, y, z, for stress two of them as in \"xy\""),
+    must("probe.position", "a point of the body in m, one number for each axis; the nearest particle is read"),
+    may("output", "a table"),
+    may("output.every", "a whole number from 1 up: record every so many steps; 1 without it"),
+];
+
+/// The key with this path, list indices dropped.
+pub fn find(path: &str) -> Option<&'static Key> {
+    KEYS.iter().find(|key| key.path == path)
+}
+
+/// The names that may stand directly in table `parent`.
+pub fn children(parent: &str) -> impl Iterator<Item = &'static Key> {
+    let depth = if parent.is_empty() { 0 } else { parent.len() + 1 };
+    KEYS.iter().filter(move |key| {
+        let inside = match parent {
+            "" => true,
+            _ => key.path.strip_prefix(parent).is_some_and(|rest| rest.starts_with('.')),
+        };
+        inside && !key.path[depth.min(key.path.len())..].contains('.')
+    })
+}
+
+/// The candidate that `word` was probably meant to be.
+pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
+    candidates
+        .map(|candidate| (strsim::jaro_winkler(word, candidate), candidate))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|(likeness, _)| *likeness > 0.7)
+        .map(|(_, candidate)| candidate.to_string())
+}

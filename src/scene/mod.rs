@@ -1,0 +1,161 @@
+//! Scenes: what to compute, declared in TOML, in SI units.
+//!
+//! Data only. What a scene does not declare is not computed: no boundary table
+//! means free sides, no region of initial velocity means a body at rest, no
+//! probe means no probe column. [`keys::KEYS`] lists every key.
+
+pub mod keys;
+mod read;
+mod source;
+
+use crate::basis::Basis;
+use crate::fault::{Fault, SceneError};
+use crate::time::Integrator;
+use std::path::Path;
+
+/// The Dyka & Ingel bar, which ships inside the program.
+pub const DYKA: &str = include_str!("../../data/scenes/dyka.toml");
+
+/// A scene, checked: every value is in range and every list has one entry for
+/// each axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The file's name without its ending: where the results go.
+    pub name: String,
+    pub title: String,
+    pub method: Method,
+    pub mass: Mass,
+    pub body: Body,
+    pub grid: GridSpec,
+    pub basis: Basis,
+    pub time: Time,
+    /// For each axis its lower and upper side.
+    pub boundary: Vec<[Side; 2]>,
+    pub initial_velocity: Vec<Region>,
+    pub probes: Vec<Probe>,
+    /// Record every so many steps.
+    pub every: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The material point method.
+    Mpm,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mass {
+    /// The row sums m_I of (18).
+    Lumped,
+}
+
+/// A box of linear elastic material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// L along each axis [m].
+    pub length: Vec<f64>,
+    /// The lower corner [m].
+    pub origin: Vec<f64>,
+    /// ρ at the start [kg/m³].
+    pub density: f64,
+    /// E [Pa].
+    pub youngs_modulus: f64,
+    /// ν [–].
+    pub poisson_ratio: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridSpec {
+    /// Cells over the body along each axis.
+    pub cells: Vec<usize>,
+    /// Particles per cell along each axis.
+    pub particles_per_cell: Vec<usize>,
+    /// Cells before and after the body along each axis.
+    pub beyond: Vec<[usize; 2]>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Time {
+    pub integrator: Integrator,
+    /// The largest Courant number c Δt / h.
+    pub cfl: f64,
+    /// The end of the run [s].
+    pub end: f64,
+}
+
+/// Which components of the velocity are zero on a side; all false is free.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Side {
+    pub fixed: Vec<bool>,
+}
+
+/// A box [from, to) in the body's frame with an initial velocity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Lower corner from the body's lower corner [m].
+    pub from: Vec<f64>,
+    /// Upper corner from the body's lower corner [m].
+    pub to: Vec<f64>,
+    /// [m/s].
+    pub velocity: Vec<f64>,
+}
+
+/// A quantity to follow at the particle nearest to a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    pub name: String,
+    pub quantity: Quantity,
+    /// From the body's lower corner [m].
+    pub position: Vec<f64>,
+}
+
+/// A component of a particle's state, axes counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    Velocity(usize),
+    Stress(usize, usize),
+    Displacement(usize),
+}
+
+impl Quantity {
+    /// Name for axis labels and unit.
+    pub fn name_unit(&self) -> (&'static str, &'static str) {
+        match self {
+            Quantity::Velocity(_) => ("velocity", "m/s"),
+            Quantity::Stress(..) => ("stress", "Pa"),
+            Quantity::Displacement(_) => ("displacement", "m"),
+        }
+    }
+}
+
+impl Region {
+    /// True for a point of the box [from, to), x from the body's lower corner.
+    pub fn contains(&self, x: &[f64]) -> bool {
+        (self.from.iter().zip(&self.to).zip(x)).all(|((from, to), x)| from <= x && x < to)
+    }
+}
+
+impl Scene {
+    /// 1, 2 or 3.
+    pub fn dimension(&self) -> usize {
+        self.body.length.len()
+    }
+
+    /// Reads a scene file with the `KEY=VALUE` of `sets` in place of its own.
+    ///
+    /// Errors: [`Fault::Read`]; [`Fault::Scene`] with file, line, key and what
+    /// is allowed.
+    pub fn open(path: &Path, sets: &[String]) -> Result<Scene, Fault> {
+        let text = std::fs::read_to_string(path).map_err(|source| Fault::Read {
+            path: path.to_path_buf(),
+            source,
+        })?;
+        let name = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy());
+        Ok(Scene::parse(&name, &path.display().to_string(), &text, sets)?)
+    }
+
+    /// Reads a scene from `text`; `path` is named in errors.
+    pub fn parse(name: &str, path: &str, text: &str, sets: &[String]) -> Result<Scene, SceneError> {
+        read::scene(name, &source::Source::new(path, text, sets))
+    }
+}

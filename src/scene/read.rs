@@ -1,0 +1,516 @@
+//! From TOML to a checked [`Scene`]: shapes by serde, ranges by hand.
+
+use super::*;
+use crate::fault::SceneError;
+use crate::reading::StepEight;
+use crate::scene::keys::nearest;
+use crate::scene::source::Source;
+use serde::Deserialize;
+use serde::de::{Deserializer, IntoDeserializer, SeqAccess, Visitor, value};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::Range;
+use toml::Spanned;
+
+/// The file as written: every value with its place.
+#[derive(Deserialize)]
+struct File {
+    title: String,
+    method: Spanned<String>,
+    mass: Spanned<String>,
+    body: FileBody,
+    grid: FileGrid,
+    basis: FileBasis,
+    time: FileTime,
+    #[serde(default)]
+    boundary: BTreeMap<String, Spanned<FileSide>>,
+    #[serde(default)]
+    initial_velocity: Vec<FileRegion>,
+    #[serde(default)]
+    probe: Vec<FileProbe>,
+    #[serde(default)]
+    output: FileOutput,
+}
+
+#[derive(Deserialize)]
+struct FileBody {
+    length: Spanned<PerAxis<f64>>,
+    origin: Option<Spanned<PerAxis<f64>>>,
+    density: Spanned<f64>,
+    youngs_modulus: Spanned<f64>,
+    poisson_ratio: Spanned<f64>,
+}
+
+#[derive(Deserialize)]
+struct FileGrid {
+    cells: Spanned<PerAxis<i64>>,
+    particles_per_cell: Spanned<PerAxis<i64>>,
+    #[serde(default)]
+    beyond: BTreeMap<String, Spanned<i64>>,
+}
+
+#[derive(Deserialize)]
+struct FileBasis {
+    kind: Spanned<String>,
+}
+
+#[derive(Deserialize)]
+struct FileTime {
+    integrator: Spanned<String>,
+    reading: Option<Spanned<String>>,
+    cfl: Spanned<f64>,
+    end: Spanned<f64>,
+}
+
+#[derive(Deserialize)]
+struct FileRegion {
+    from: Spanned<PerAxis<f64>>,
+    to: Spanned<PerAxis<f64>>,
+    velocity: Spanned<PerAxis<f64>>,
+}
+
+#[derive(Deserialize)]
+struct FileProbe {
+    name: Spanned<String>,
+    quantity: Spanned<String>,
+    component: Option<Spanned<String>>,
+    position: Spanned<PerAxis<f64>>,
+}
+
+#[derive(Deserialize, Default)]
+struct FileOutput {
+    every: Option<Spanned<i64>>,
+}
+
+/// A number, or a list with one number for each axis.
+struct PerAxis<T>(Vec<T>);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for PerAxis<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OneOrMany<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for OneOrMany<T> {
+            type Value = PerAxis<T>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number or a list of numbers")
+            }
+            fn visit_i64<E: serde::de::Error>(self, x: i64) -> Result<Self::Value, E> {
+                let one: value::I64Deserializer<E> = x.into_deserializer();
+                T::deserialize(one).map(|x| PerAxis(vec![x]))
+            }
+            fn visit_f64<E: serde::de::Error>(self, x: f64) -> Result<Self::Value, E> {
+                let one: value::F64Deserializer<E> = x.into_deserializer();
+                T::deserialize(one).map(|x| PerAxis(vec![x]))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
+                let mut many = Vec::new();
+                while let Some(x) = seq.next_element()? {
+                    many.push(x);
+                }
+                Ok(PerAxis(many))
+            }
+        }
+        deserializer.deserialize_any(OneOrMany(PhantomData))
+    }
+}
+
+/// One condition for a whole side, or one for each component.
+enum FileSide {
+    Whole(String),
+    Each(BTreeMap<String, Spanned<String>>),
+}
+
+impl<'de> Deserialize<'de> for FileSide {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Side;
+        impl<'de> Visitor<'de> for Side {
+            type Value = FileSide;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a string or a table of components")
+            }
+            fn visit_str<E>(self, whole: &str) -> Result<FileSide, E> {
+                Ok(FileSide::Whole(whole.to_string()))
+            }
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<FileSide, A::Error> {
+                BTreeMap::deserialize(value::MapAccessDeserializer::new(map)).map(FileSide::Each)
+            }
+        }
+        deserializer.deserialize_any(Side)
+    }
+}
+
+/// Names of the axes and of their two sides.
+const AXES: [(&str, [&str; 2]); 3] =
+    [("x", ["left", "right"]), ("y", ["bottom", "top"]), ("z", ["back", "front"])];
+
+/// The most memory that a scene may ask for [bytes].
+const MEMORY: f64 = 16.0 * 1024.0 * 1024.0 * 1024.0;
+
+/// Range checks that know where every value was written.
+struct Check<'a> {
+    source: &'a Source,
+    dimension: usize,
+}
+
+impl Check<'_> {
+    fn number(
+        &self,
+        key: &str,
+        value: &Spanned<f64>,
+        good: impl Fn(f64) -> bool,
+    ) -> Result<f64, SceneError> {
+        let x = *value.get_ref();
+        if x.is_finite() && good(x) {
+            return Ok(x);
+        }
+        Err(self.source.error(key, value.span(), format!("{x:?} is out of range")))
+    }
+
+    /// One entry for each axis, all good.
+    fn axes<T: Copy + fmt::Debug>(
+        &self,
+        key: &str,
+        value: &Spanned<PerAxis<T>>,
+        good: impl Fn(usize, T) -> bool,
+    ) -> Result<Vec<T>, SceneError> {
+        let list = &value.get_ref().0;
+        if list.len() != self.dimension {
+            let problem = format!(
+                "{} given, but the scene has {} (the length of body.length)",
+                counted(list.len(), "number"),
+                counted(self.dimension, "axis")
+            );
+            return Err(self.source.error(key, value.span(), problem));
+        }
+        match list.iter().enumerate().find(|&(d, x)| !good(d, *x)) {
+            None => Ok(list.clone()),
+            Some((_, x)) => {
+                Err(self.source.error(key, value.span(), format!("{x:?} is out of range")))
+            }
+        }
+    }
+
+    /// The choice that the text names.
+    fn choose<T: Copy>(
+        &self,
+        key: &str,
+        text: &str,
+        span: Range<usize>,
+        choices: &[(&str, T)],
+    ) -> Result<T, SceneError> {
+        if let Some((_, choice)) = choices.iter().find(|(name, _)| *name == text) {
+            return Ok(*choice);
+        }
+        let mut error = self.source.error(key, span, format!("\"{text}\" is not known here"));
+        error.suggestion = nearest(text, choices.iter().map(|(name, _)| *name));
+        Err(error)
+    }
+}
+
+fn counted(n: usize, word: &str) -> String {
+    match (n, word) {
+        (1, _) => format!("1 {word}"),
+        (_, "axis") => format!("{n} axes"),
+        _ => format!("{n} {word}s"),
+    }
+}
+
+/// Reads and checks a scene.
+pub fn scene(name: &str, source: &Source) -> Result<Scene, SceneError> {
+    let file: File = source.read()?;
+    let length = &file.body.length;
+    let dimension = length.get_ref().0.len();
+    if !(1..=3).contains(&dimension) {
+        let problem = format!("{} given", counted(dimension, "number"));
+        return Err(source.error("body.length", length.span(), problem));
+    }
+    let check = Check { source, dimension };
+
+    let method = check.choose(
+        "method",
+        file.method.get_ref(),
+        file.method.span(),
+        &[("mpm", Method::Mpm)],
+    )?;
+    let mass = check.choose(
+        "mass",
+        file.mass.get_ref(),
+        file.mass.span(),
+        &[("lumped", Mass::Lumped)],
+    )?;
+    let kind = &file.basis.kind;
+    let basis =
+        check.choose("basis.kind", kind.get_ref(), kind.span(), &[("linear", Basis::Linear)])?;
+    let body = body(&check, &file.body)?;
+    let time = time(&check, &file.time)?;
+    let boundary = boundary(&check, &file.boundary)?;
+    let grid = grid(&check, &file.grid, &boundary)?;
+    let initial_velocity = regions(&check, &file.initial_velocity, &body)?;
+    let probes = probes(&check, &file.probe, &body)?;
+    let every = match &file.output.every {
+        None => 1,
+        Some(every) if *every.get_ref() >= 1 => *every.get_ref() as usize,
+        Some(every) => {
+            let problem = format!("{} is out of range", every.get_ref());
+            return Err(source.error("output.every", every.span(), problem));
+        }
+    };
+
+    let scene = Scene {
+        name: name.to_string(),
+        title: file.title,
+        method,
+        mass,
+        body,
+        grid,
+        basis,
+        time,
+        boundary,
+        initial_velocity,
+        probes,
+        every,
+    };
+    affordable(&check, &scene, &file.grid, &file.time)?;
+    Ok(scene)
+}
+
+fn body(check: &Check, file: &FileBody) -> Result<Body, SceneError> {
+    let positive = |x: f64| x > 0.0;
+    let body = Body {
+        length: check.axes("body.length", &file.length, |_, x| x.is_finite() && x > 0.0)?,
+        origin: match &file.origin {
+            None => vec![0.0; check.dimension],
+            Some(origin) => check.axes("body.origin", origin, |_, x| x.is_finite())?,
+        },
+        density: check.number("body.density", &file.density, positive)?,
+        youngs_modulus: check.number("body.youngs_modulus", &file.youngs_modulus, positive)?,
+        poisson_ratio: check.number("body.poisson_ratio", &file.poisson_ratio, |nu| {
+            -1.0 < nu && nu < 0.5
+        })?,
+    };
+    let c = crate::model::wave_speed(&body);
+    if !(c.is_finite() && c > 0.0) {
+        let problem = format!("with body.density it gives the wave speed {c:e} m/s");
+        let mut error = check.source.error("body.youngs_modulus", file.youngs_modulus.span(), problem);
+        error.allowed = "moduli whose wave speed √((λ + 2μ)/ρ) is a finite number above 0".into();
+        return Err(error);
+    }
+    Ok(body)
+}
+
+fn time(check: &Check, file: &FileTime) -> Result<Time, SceneError> {
+    let readings =
+        [("second-order", StepEight::SecondOrder), ("as-printed", StepEight::AsPrinted)];
+    let reading = match &file.reading {
+        None => StepEight::default(),
+        Some(text) => check.choose("time.reading", text.get_ref(), text.span(), &readings)?,
+    };
+    Ok(Time {
+        integrator: check.choose(
+            "time.integrator",
+            file.integrator.get_ref(),
+            file.integrator.span(),
+            &[("newmark", Integrator::Newmark(reading))],
+        )?,
+        cfl: check.number("time.cfl", &file.cfl, |x| x > 0.0)?,
+        end: check.number("time.end", &file.end, |x| x > 0.0)?,
+    })
+}
+
+/// Refuses a side or component that the scene has no axis for.
+fn axis_of(
+    check: &Check,
+    key: String,
+    span: Range<usize>,
+    axis: Option<usize>,
+) -> Result<usize, SceneError> {
+    match axis {
+        Some(axis) if axis < check.dimension => Ok(axis),
+        _ => {
+            let problem =
+                format!("the scene has {}, and this names another", counted(check.dimension, "axis"));
+            Err(check.source.error(&key, span, problem))
+        }
+    }
+}
+
+fn boundary(
+    check: &Check,
+    file: &BTreeMap<String, Spanned<FileSide>>,
+) -> Result<Vec<[Side; 2]>, SceneError> {
+    let states = [("fixed", true), ("free", false)];
+    let free = Side { fixed: vec![false; check.dimension] };
+    let mut boundary = vec![[free.clone(), free]; check.dimension];
+    for (name, entry) in file {
+        let key = format!("boundary.{name}");
+        let axis = axis_of(check, key.clone(), entry.span(), side_axis(name))?;
+        let upper = usize::from(AXES[axis].1[1] == name);
+        let fixed = &mut boundary[axis][upper].fixed;
+        match entry.get_ref() {
+            FileSide::Whole(text) => {
+                let state = check.choose(&key, text, entry.span(), &states)?;
+                fixed.fill(state);
+            }
+            FileSide::Each(components) => {
+                for (component, text) in components {
+                    let key = format!("{key}.{component}");
+                    let i = AXES.iter().position(|(x, _)| x == component);
+                    let i = axis_of(check, key.clone(), text.span(), i)?;
+                    fixed[i] = check.choose(&key, text.get_ref(), text.span(), &states)?;
+                }
+            }
+        }
+    }
+    Ok(boundary)
+}
+
+fn side_axis(name: &str) -> Option<usize> {
+    AXES.iter().position(|(_, sides)| sides.contains(&name))
+}
+
+fn grid(
+    check: &Check,
+    file: &FileGrid,
+    boundary: &[[Side; 2]],
+) -> Result<GridSpec, SceneError> {
+    let cells = check.axes("grid.cells", &file.cells, |_, n| n >= 1)?;
+    let per_cell = check
+        .axes("grid.particles_per_cell", &file.particles_per_cell, |_, n| (1..=64).contains(&n))?;
+    // A body leaves the grid only through a side that lets it move.
+    let mut beyond: Vec<[usize; 2]> = (0..check.dimension)
+        .map(|d| [0, 1].map(|upper| usize::from(!boundary[d][upper].fixed[d])))
+        .collect();
+    for (name, n) in &file.beyond {
+        let key = format!("grid.beyond.{name}");
+        let axis = axis_of(check, key.clone(), n.span(), side_axis(name))?;
+        if *n.get_ref() < 0 {
+            let problem = format!("{} is out of range", n.get_ref());
+            return Err(check.source.error(&key, n.span(), problem));
+        }
+        beyond[axis][usize::from(AXES[axis].1[1] == name)] = *n.get_ref() as usize;
+    }
+    Ok(GridSpec {
+        cells: cells.iter().map(|n| *n as usize).collect(),
+        particles_per_cell: per_cell.iter().map(|n| *n as usize).collect(),
+        beyond,
+    })
+}
+
+fn regions(check: &Check, file: &[FileRegion], body: &Body) -> Result<Vec<Region>, SceneError> {
+    let mut regions: Vec<Region> = Vec::new();
+    for (n, entry) in file.iter().enumerate() {
+        let key = |name: &str| format!("initial_velocity[{n}].{name}");
+        let upper = |d: usize| body.origin[d] + body.length[d];
+        let from =
+            check.axes(&key("from"), &entry.from, |d, x| body.origin[d] <= x && x < upper(d))?;
+        let to = check.axes(&key("to"), &entry.to, |d, x| from[d] < x && x <= upper(d))?;
+        let region = Region {
+            velocity: check.axes(&key("velocity"), &entry.velocity, |_, v| v.is_finite())?,
+            from: (0..check.dimension).map(|d| from[d] - body.origin[d]).collect(),
+            to: (0..check.dimension)
+                // The body's own corner, to the last bit, where the region ends with it.
+                .map(|d| if to[d] == upper(d) { body.length[d] } else { to[d] - body.origin[d] })
+                .collect(),
+        };
+        let overlaps = |other: &Region| {
+            (0..check.dimension).all(|d| region.from[d] < other.to[d] && other.from[d] < region.to[d])
+        };
+        if let Some(other) = regions.iter().position(overlaps) {
+            let problem = format!("this region overlaps initial_velocity[{other}]");
+            return Err(check.source.error(&key("from"), entry.from.span(), problem));
+        }
+        regions.push(region);
+    }
+    Ok(regions)
+}
+
+fn probes(check: &Check, file: &[FileProbe], body: &Body) -> Result<Vec<Probe>, SceneError> {
+    let mut probes: Vec<Probe> = Vec::new();
+    for (n, entry) in file.iter().enumerate() {
+        let key = |name: &str| format!("probe[{n}].{name}");
+        let name = entry.name.get_ref();
+        let plain = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        let used = probes.iter().any(|probe| probe.name == *name);
+        if !plain || used {
+            let problem = if used { "is used twice" } else { "cannot name a column and a file" };
+            let problem = format!("\"{name}\" {problem}");
+            return Err(check.source.error(&key("name"), entry.name.span(), problem));
+        }
+        let position = check.axes(&key("position"), &entry.position, |d, x| {
+            body.origin[d] <= x && x <= body.origin[d] + body.length[d]
+        })?;
+        probes.push(Probe {
+            name: name.clone(),
+            quantity: quantity(check, entry, &key)?,
+            position: (0..check.dimension).map(|d| position[d] - body.origin[d]).collect(),
+        });
+    }
+    Ok(probes)
+}
+
+fn quantity(
+    check: &Check,
+    entry: &FileProbe,
+    key: &dyn Fn(&str) -> String,
+) -> Result<Quantity, SceneError> {
+    let kinds = [
+        ("velocity", Quantity::Velocity(0)),
+        ("stress", Quantity::Stress(0, 0)),
+        ("displacement", Quantity::Displacement(0)),
+    ];
+    let kind =
+        check.choose(&key("quantity"), entry.quantity.get_ref(), entry.quantity.span(), &kinds)?;
+    let Some(component) = &entry.component else {
+        if check.dimension == 1 {
+            return Ok(kind);
+        }
+        let problem = "in 2D and 3D a probe needs the key `component`";
+        return Err(check.source.error(&key("component"), entry.quantity.span(), problem));
+    };
+    let axes: Vec<usize> = component
+        .get_ref()
+        .chars()
+        .filter_map(|c| AXES[..check.dimension].iter().position(|(x, _)| x.starts_with(c)))
+        .collect();
+    let complete = axes.len() == component.get_ref().len();
+    match (kind, axes.as_slice()) {
+        (Quantity::Velocity(_), &[i]) if complete => Ok(Quantity::Velocity(i)),
+        (Quantity::Displacement(_), &[i]) if complete => Ok(Quantity::Displacement(i)),
+        (Quantity::Stress(..), &[i, j]) if complete => Ok(Quantity::Stress(i, j)),
+        _ => {
+            let problem = format!("\"{}\" is not a component of it", component.get_ref());
+            Err(check.source.error(&key("component"), component.span(), problem))
+        }
+    }
+}
+
+/// Refuses a scene whose arrays would not fit, before any is allocated.
+fn affordable(
+    check: &Check,
+    scene: &Scene,
+    grid: &FileGrid,
+    time: &FileTime,
+) -> Result<(), SceneError> {
+    let (particles, nodes, steps) = scene.sizes();
+    let d = scene.dimension() as f64;
+    let particle_bytes = 8.0 * (2.0 + 3.0 * d + 2.0 * d * d);
+    let pair_bytes = 8.0 * (2.0 + d) * libm::exp2(d);
+    let node_bytes = 8.0 * (1.0 + 3.0 * d);
+    let rows = steps / scene.every as f64;
+    let row_bytes = 8.0 * (4.0 + d + 2.0 * scene.probes.len() as f64);
+    let space = particles * (particle_bytes + pair_bytes) + nodes * node_bytes;
+    let limit = MEMORY / 1e9;
+    if space > MEMORY {
+        let problem = format!("this grid needs {:.1} GB of memory", space / 1e9);
+        let mut error = check.source.error("grid.cells", grid.cells.span(), problem);
+        error.allowed = format!("a grid that needs at most {limit:.1} GB");
+        return Err(error);
+    }
+    if rows * row_bytes > MEMORY {
+        let problem = format!("the history of {steps:e} steps needs {:e} GB of memory", rows * row_bytes / 1e9);
+        let mut error = check.source.error("time.end", time.end.span(), problem);
+        error.allowed = format!("a history of at most {limit:.1} GB; see also output.every");
+        return Err(error);
+    }
+    Ok(())
+}

@@ -1,0 +1,200 @@
+//! The steps of the paper's Algorithm, one function each: outputs first,
+//! inputs after, so that a signature reads like its equation.
+#![allow(non_snake_case)]
+
+use crate::basis::{self, Outside};
+use crate::continuum::law::{self, LinearElastic};
+use crate::continuum::shape::Shape;
+use crate::continuum::state::{Nodes, Particles};
+use crate::continuum::sums;
+use crate::cost::Cost;
+use crate::fault::{Breakdown, Moment};
+use crate::model::{Fixed, Model};
+use crate::reading::StepEight;
+use nalgebra::SVector;
+
+/// γ of Newmark's method: with β = 0 the explicit central difference.
+pub const NEWMARK_GAMMA: f64 = 0.5;
+
+// ANCHOR: predict
+/// Step 1, predictor: (27) x_p += Δt Σ_I p_I N_Ip / m_I + ½ Δt² Σ_I f_I N_Ip / m_I
+/// and (28) v_p += (1 − γ) Δt Σ_I f_I N_Ip / m_I, with nodal values of k.
+pub fn predict<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        let v_p = sums::to_particle(&node.p, node, shape, p);
+        let a_p = sums::to_particle(&node.f, node, shape, p);
+        particle.x[p] += v_p * dt + a_p * (0.5 * dt * dt);
+        particle.v[p] += a_p * ((1.0 - NEWMARK_GAMMA) * dt);
+    }
+}
+// ANCHOR_END: predict
+
+// ANCHOR: discard
+/// Step 2: discard the previous nodal values.
+pub fn discard<const D: usize>(node: &mut Nodes<D>) {
+    node.m.fill(0.0);
+    node.p.fill(SVector::zeros());
+    node.v.fill(SVector::zeros());
+    node.f.fill(SVector::zeros());
+}
+// ANCHOR_END: discard
+
+/// N_Ip and ∇N_Ip at the particles' new positions.
+///
+/// Errors: [`Breakdown::LeftGrid`].
+pub fn tabulate<const D: usize>(
+    shape: &mut Shape<D>,
+    particle: &Particles<D>,
+    model: &Model<D>,
+    moment: Moment,
+    cost: &mut Cost,
+) -> Result<(), Breakdown> {
+    basis::tabulate(shape, cost, &model.basis, &model.grid, &particle.x).map_err(
+        |Outside { particle: p }| Breakdown::LeftGrid {
+            particle: p,
+            moment,
+            position: particle.x[p].iter().copied().collect(),
+        },
+    )
+}
+
+// ANCHOR: transfer
+/// Step 3: m_I = Σ_p m_p N_Ip  [kg] and p_I = Σ_p m_p v_p N_Ip  [kg m/s].
+pub fn transfer<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, shape: &Shape<D>) {
+    sums::lumped_mass(node, particle, shape);
+    sums::momentum(node, particle, shape);
+}
+// ANCHOR_END: transfer
+
+// ANCHOR: impose_essential
+/// Step 4: p_I = 0 where the boundary is fixed, then v_I = p_I / m_I  [m/s].
+pub fn impose_essential<const D: usize>(node: &mut Nodes<D>, fixed: &Fixed) {
+    for &(I, i) in fixed {
+        node.p[I][i] = 0.0;
+    }
+    for I in 0..node.len() {
+        if node.m[I] > 0.0 {
+            node.v[I] = node.p[I] / node.m[I];
+        }
+    }
+}
+// ANCHOR_END: impose_essential
+
+// ANCHOR: increment_strain
+/// Step 5: Δε_p = Δt ε̇_p, with (16) ε̇_p = ½ Σ_I (∇N_Ip v_I + (∇N_Ip v_I)ᵀ)  [–].
+pub fn increment_strain<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        let grad_v = sums::velocity_gradient(node, shape, p);
+        particle.d_eps[p] = law::symmetric_part(&grad_v) * dt;
+    }
+}
+// ANCHOR_END: increment_strain
+
+// ANCHOR: update_density
+/// Step 6: ρ_p ← ρ_p / (1 + tr Δε_p)  [kg/m³].
+///
+/// Errors: [`Breakdown::Inverted`] when 1 + tr Δε_p ≤ 0.
+pub fn update_density<const D: usize>(
+    particle: &mut Particles<D>,
+    moment: Moment,
+) -> Result<(), Breakdown> {
+    for p in 0..particle.len() {
+        particle.rho[p] = law::density(particle.rho[p], &particle.d_eps[p]).ok_or(
+            Breakdown::Inverted {
+                particle: p,
+                moment,
+                strain: particle.d_eps[p].trace(),
+            },
+        )?;
+    }
+    Ok(())
+}
+// ANCHOR_END: update_density
+
+// ANCHOR: update_stress
+/// (3), between steps 6 and 7: σ_p += D : Δε_p  [Pa].
+pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &LinearElastic) {
+    for p in 0..particle.len() {
+        particle.sigma[p] += law.stress_increment(&particle.d_eps[p]);
+    }
+}
+// ANCHOR_END: update_stress
+
+// ANCHOR: balance_forces
+/// Step 7: f_I = f_I^int, (14), and f_I = 0 where the boundary is fixed  [N].
+pub fn balance_forces<const D: usize>(
+    node: &mut Nodes<D>,
+    particle: &Particles<D>,
+    shape: &Shape<D>,
+    fixed: &Fixed,
+) {
+    sums::internal_force(node, particle, shape);
+    for &(I, i) in fixed {
+        node.f[I][i] = 0.0;
+    }
+}
+// ANCHOR_END: balance_forces
+
+// ANCHOR: integrate_momentum
+/// Step 8: p_I += γ f_I Δt, or f_I Δt as printed  [kg m/s].
+pub fn integrate_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64, reading: StepEight) {
+    let share = match reading {
+        StepEight::SecondOrder => NEWMARK_GAMMA,
+        StepEight::AsPrinted => 1.0,
+    };
+    for I in 0..node.len() {
+        node.p[I] += node.f[I] * (share * dt);
+    }
+}
+// ANCHOR_END: integrate_momentum
+
+// ANCHOR: correct
+/// Step 9, corrector (29): v_p += γ Δt Σ_I f_I N_Ip / m_I, all at k+1  [m/s].
+pub fn correct<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        let a_p = sums::to_particle(&node.f, node, shape, p);
+        particle.v[p] += a_p * (NEWMARK_GAMMA * dt);
+    }
+}
+// ANCHOR_END: correct
+
+/// Stops a run in the step in which a particle stops being finite.
+///
+/// Errors: [`Breakdown::NotFinite`] with the first such particle.
+pub fn finite<const D: usize>(
+    particle: &Particles<D>,
+    moment: Moment,
+) -> Result<(), Breakdown> {
+    for p in 0..particle.len() {
+        let symbol = if !particle.x[p].iter().all(|x| x.is_finite()) {
+            "position"
+        } else if !particle.v[p].iter().all(|v| v.is_finite()) {
+            "velocity"
+        } else if !particle.sigma[p].iter().all(|s| s.is_finite()) {
+            "stress"
+        } else {
+            continue;
+        };
+        return Err(Breakdown::NotFinite {
+            particle: p,
+            moment,
+            symbol,
+        });
+    }
+    Ok(())
+}
