@@ -19,7 +19,8 @@
 //! | doubts and misprints | [`reading`] | `tests/convergence.rs` |
 //!
 //! Around the paper stand [`scene`] (what to compute), [`model`] and [`run`]
-//! (the time loop), [`history`], [`summary`] and [`figure`] (what comes out),
+//! (the time loop), [`history`], [`summary`], [`figure`]
+//! and [`report`] (what comes out),
 //! [`cost`] (what it took) and [`fault`] (what can go wrong).
 
 pub mod basis;
@@ -33,6 +34,7 @@ pub mod history;
 pub mod measure;
 pub mod model;
 pub mod reading;
+pub mod report;
 pub mod run;
 pub mod scene;
 pub mod summary;

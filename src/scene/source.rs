@@ -100,7 +100,8 @@ impl Source {
                 .filter(|(_, range)| range.contains(&span.start))
                 .min_by_key(|(_, range)| range.len())
                 .map_or("", |(key, _)| key);
-            self.error(key, span, error.message())
+            let plain = error.message().replace("expected f64", "expected a number");
+            self.error(key, span, plain.replace("expected i64", "expected a whole number"))
         })
     }
 
