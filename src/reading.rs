@@ -22,12 +22,23 @@
 /// The predictor (27) adds Δt p_I/m_I + ½Δt² f_I/m_I, so p_I must be the
 /// momentum *at* k+1. The mapped p_I holds the predicted velocity, short of
 /// γ f_I Δt.
+///
+/// Neither reading makes x_p second order without condition. The next step 3
+/// maps the particles' velocity anew, which has grown by Σ_I N a_I Δt, while
+/// (27) moved x_p with a_I itself; a remainder of first order in Δt is left,
+/// Σ_I N_I (a_I − a_p) Δt² per step. It is O(h²) on smooth data, and all of the
+/// error in a single cell.
+///
+/// Tests: `step_eight_*` in `tests/convergence.rs`,
+/// `one_particle_shows_the_remapping_term` in `tests/analytical.rs`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum StepEight {
-    /// p_I ← p_I + γ f_I Δt: the momentum at k+1, second order in time.
+    /// p_I ← p_I + γ f_I Δt: the momentum at k+1, second order in time but for
+    /// the remainder above.
     #[default]
     SecondOrder,
-    /// p_I ← p_I + f_I Δt, as the paper prints it: f enters the displacement
-    /// half a step twice, first order in time.
+    /// p_I ← p_I + f_I Δt, as the paper prints it: half of it enters the
+    /// displacement twice, which is then of first order. The velocity does not
+    /// see p_I and stays of second order.
     AsPrinted,
 }

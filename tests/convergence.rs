@@ -1,0 +1,90 @@
+//! Observed order: in time on smooth data, in space on the bar's jumps.
+
+mod support;
+
+use lme_mpm::measure::rms;
+use lme_mpm::model::Model;
+use lme_mpm::summary::lines;
+use nalgebra::Vector1;
+use support::*;
+
+/// u and v of all particles at t = L/c, from v = v0 sin(πx/2L), on one grid
+/// with `steps` time steps.
+fn smooth_run(reading: &str, steps: usize) -> (Vec<f64>, Vec<f64>) {
+    let scene = dyka(&["grid.cells=160", &format!("time.reading={reading}")]);
+    let mut model = Model::<1>::of(&scene);
+    model.dt = transit() / steps as f64;
+    let mut state = model.initial_state(&scene);
+    let start: Vec<f64> = state.particle.x.iter().map(|x| x[0]).collect();
+    for (v, x) in state.particle.v.iter_mut().zip(&start) {
+        *v = Vector1::new(0.1 * (std::f64::consts::FRAC_PI_2 * x / 0.1333).sin());
+    }
+    march(&model, &mut state, steps);
+    let u = state.particle.x.iter().zip(&start).map(|(x, start)| x[0] - start).collect();
+    (u, state.particle.v.iter().map(|v| v[0]).collect())
+}
+
+/// The slopes of u and v in Δt, against a run of the same grid with 16 times
+/// the steps of the finest, so that the grid's own error drops out.
+fn orders(reading: &str) -> (f64, f64) {
+    let (u, v) = smooth_run("second-order", 8192);
+    let steps = [128, 192, 256, 384, 512];
+    let dt: Vec<f64> = steps.iter().map(|n| 1.0 / *n as f64).collect();
+    let errors: Vec<(f64, f64)> = steps
+        .iter()
+        .map(|n| {
+            let (u_n, v_n) = smooth_run(reading, *n);
+            (rms(u_n.into_iter().zip(u.clone())), rms(v_n.into_iter().zip(v.clone())))
+        })
+        .collect();
+    let of = |pick: fn(&(f64, f64)) -> f64| {
+        slope(&dt, &errors.iter().map(pick).collect::<Vec<_>>())
+    };
+    (of(|e| e.0), of(|e| e.1))
+}
+
+/// Step 8 with γ f Δt: second order in time. (The first-order remainder of the
+/// displacement, see `one_particle_shows_the_remapping_term`, is below these
+/// errors on a fine grid.)
+#[test]
+fn step_eight_second_order() {
+    let (u, v) = orders("second-order");
+    assert!((u - 2.0).abs() < 0.05, "displacement: order {u}");
+    assert!((v - 2.0).abs() < 0.05, "velocity: order {v}");
+}
+
+/// Step 8 as printed, with f Δt: the displacement is of first order. The
+/// velocity stays of second order while the particles hardly move, because
+/// p_I of step 8 enters nothing but the positions.
+#[test]
+fn step_eight_as_printed_is_first_order() {
+    let (u, v) = orders("as-printed");
+    assert!((u - 1.0).abs() < 0.05, "displacement: order {u}");
+    assert!((v - 2.0).abs() < 0.05, "velocity: order {v}");
+}
+
+/// On the bar's jumps v and σ converge like h^(1/3): a second-order scheme
+/// smears a front over h^(2/3), and the RMS is the root of that. u is one
+/// order smoother and converges like h.
+#[test]
+fn dyka_order_in_space() {
+    let cells = [40, 80, 160, 320];
+    let h: Vec<f64> = cells.iter().map(|n| 1.0 / *n as f64).collect();
+    let mut errors = vec![Vec::new(); 3];
+    for n in cells {
+        let scene = dyka(&[&format!("grid.cells={n}")]);
+        let lines = lines(&scene, &finished(&scene), 0.0);
+        let names = [
+            "velocity_end_rms_relative",
+            "stress_three_quarter_rms_relative",
+            "displacement_field_rms_relative",
+        ];
+        for (list, name) in errors.iter_mut().zip(names) {
+            list.push(lines.iter().find(|line| line.quantity == name).unwrap().value);
+        }
+    }
+    let [v, stress, u] = [0, 1, 2].map(|i| slope(&h, &errors[i]));
+    assert!((v - 1.0 / 3.0).abs() < 0.1, "velocity: order {v}");
+    assert!((stress - 1.0 / 3.0).abs() < 0.1, "stress: order {stress}");
+    assert!((u - 1.0).abs() < 0.1, "displacement: order {u}");
+}

@@ -1,0 +1,492 @@
+//! Laws that hold for any data: of the basis, of the sums, of a whole run.
+#![allow(non_snake_case)]
+
+mod support;
+
+use approx::assert_relative_eq;
+use lme_mpm::basis::{Basis, tabulate};
+use lme_mpm::continuum::law::{LinearElastic, density, symmetric_part};
+use lme_mpm::continuum::shape::Shape;
+use lme_mpm::continuum::state::{Particles, State};
+use lme_mpm::continuum::sums;
+use lme_mpm::cost::Cost;
+use lme_mpm::grid::Grid;
+use lme_mpm::measure;
+use lme_mpm::model::Model;
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2};
+use proptest::prelude::*;
+use support::*;
+
+// ---- the basis ---------------------------------------------------------------
+
+/// A grid with different spacings, with cells before and after the body.
+fn grid<const D: usize>() -> Grid<D> {
+    let length = [0.7, 1.3, 0.4];
+    let cells = [5, 4, 3];
+    let beyond = [[1, 2], [0, 1], [2, 0]];
+    Grid::over(
+        std::array::from_fn(|d| length[d]),
+        std::array::from_fn(|d| cells[d]),
+        std::array::from_fn(|d| beyond[d]),
+    )
+}
+
+/// A point of the body's box from three numbers in [0, 1].
+fn point<const D: usize>(s: [f64; 3]) -> SVector<f64, D> {
+    let length = [0.7, 1.3, 0.4];
+    SVector::from_fn(|d, _| s[d] * length[d])
+}
+
+fn row<const D: usize>(x: SVector<f64, D>) -> Vec<(usize, f64, SVector<f64, D>)> {
+    let (mut shape, mut cost) = (Shape::default(), Cost::default());
+    tabulate(&mut shape, &mut cost, &Basis::Linear, &grid::<D>(), &[x]).unwrap();
+    shape.of(0).map(|(I, N, grad)| (I, N, *grad)).collect()
+}
+
+/// ΣN = 1, N ≥ 0, ΣN x_I = x, Σ∇N = 0, Σ x_I ⊗ ∇N = 1.
+fn check_basis<const D: usize>(s: [f64; 3]) {
+    let (grid, x) = (grid::<D>(), point::<D>(s));
+    let row = row(x);
+    assert_eq!(row.len(), 1 << D);
+    let mut sum = (0.0, SVector::<f64, D>::zeros(), SVector::<f64, D>::zeros());
+    let mut moment = SMatrix::<f64, D, D>::zeros();
+    for (I, N, grad_N) in row {
+        assert!(N >= 0.0, "N = {N:e} at {x:?}");
+        let x_I = grid.position(I);
+        sum.0 += N;
+        sum.1 += x_I * N;
+        sum.2 += grad_N;
+        moment += x_I * grad_N.transpose();
+    }
+    assert_relative_eq!(sum.0, 1.0, epsilon = 4e-16);
+    assert_relative_eq!(sum.1, x, epsilon = 1e-15);
+    assert_relative_eq!(sum.2, SVector::zeros(), epsilon = 1e-14);
+    assert_relative_eq!(moment, SMatrix::identity(), epsilon = 1e-14);
+}
+
+/// ∇N against central differences, inside a cell, where N is a polynomial of
+/// degree one in each direction and the difference is exact up to round-off.
+fn check_gradient<const D: usize>(s: [f64; 3]) {
+    let grid = grid::<D>();
+    let corner = grid.position(grid.node(std::array::from_fn(|d| grid.before[d] + 1)));
+    let x = SVector::<f64, D>::from_fn(|d, _| corner[d] + (0.1 + 0.8 * s[d]) * grid.h[d]);
+    let here = row(x);
+    for d in 0..D {
+        let mut step = SVector::<f64, D>::zeros();
+        step[d] = 0.05 * grid.h[d];
+        let (ahead, back) = (row(x + step), row(x - step));
+        for k in 0..here.len() {
+            let difference = (ahead[k].1 - back[k].1) / (2.0 * step[d]);
+            assert_relative_eq!(here[k].2[d], difference, epsilon = 1e-12);
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn basis_linear_reproduces_affine_fields(s in [0.0..=1.0_f64, 0.0..=1.0, 0.0..=1.0]) {
+        check_basis::<1>(s);
+        check_basis::<2>(s);
+        check_basis::<3>(s);
+    }
+
+    #[test]
+    fn basis_linear_gradient_is_its_slope(s in [0.0..=1.0_f64, 0.0..=1.0, 0.0..=1.0]) {
+        check_gradient::<1>(s);
+        check_gradient::<2>(s);
+        check_gradient::<3>(s);
+    }
+}
+
+/// On a node N = 1 there and 0 elsewhere; at every node of the body, corners
+/// included, and one ulp to either side of it.
+#[test]
+fn basis_linear_on_nodes_and_edges() {
+    let grid = grid::<1>();
+    for i in 0..=5 {
+        let x = grid.position(grid.before[0] + i)[0];
+        for x in [x, x.next_up(), x.next_down()] {
+            for (I, N, _) in row(SVector::<f64, 1>::new(x)) {
+                let expected = if I == grid.before[0] + i { 1.0 } else { 0.0 };
+                assert_relative_eq!(N, expected, epsilon = 1e-14);
+            }
+        }
+    }
+    // The upper corner of a grid that ends with the body, to the last bit.
+    for cells in 1..200 {
+        let grid = Grid::<1>::over([0.1333], [cells], [[0, 0]]);
+        let at = grid.locate(&SVector::<f64, 1>::new(0.1333)).unwrap();
+        assert_eq!(at.cell[0], cells - 1);
+        assert_relative_eq!(at.xi[0], 1.0, epsilon = 1e-13);
+    }
+}
+
+/// Outside the grid, and for NaN, there is no row but a named particle.
+#[test]
+fn basis_names_the_particle_outside() {
+    let inside = Vector2::new(0.1, 0.1);
+    for outside in [Vector2::new(-0.2, 0.1), Vector2::new(0.1, 1.7), Vector2::new(f64::NAN, 0.1)] {
+        let (mut shape, mut cost) = (Shape::default(), Cost::default());
+        let x = [inside, outside];
+        let fault = tabulate(&mut shape, &mut cost, &Basis::Linear, &grid::<2>(), &x).unwrap_err();
+        assert_eq!(fault.particle, 1);
+    }
+}
+
+// ---- the pointwise laws --------------------------------------------------------
+
+/// Hooke's law in plane strain against its textbook form.
+#[test]
+fn law_plane_strain() {
+    let (E, nu) = (210e9, 0.3);
+    let law = LinearElastic::new(E, nu);
+    let eps = Matrix2::new(1e-3, 2e-4, 2e-4, -4e-4);
+    let sigma = law.stress_increment(&eps);
+    let factor = E / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    assert_relative_eq!(sigma[(0, 0)], factor * ((1.0 - nu) * 1e-3 - nu * 4e-4), max_relative = 1e-14);
+    assert_relative_eq!(sigma[(1, 1)], factor * (nu * 1e-3 - (1.0 - nu) * 4e-4), max_relative = 1e-14);
+    assert_relative_eq!(sigma[(0, 1)], E / (1.0 + nu) * 2e-4, max_relative = 1e-14);
+    assert_eq!(sigma[(0, 1)], sigma[(1, 0)]);
+}
+
+/// In 1D the modulus is E(1−ν)/((1+ν)(1−2ν)), and E for ν = 0.
+#[test]
+fn law_uniaxial_strain() {
+    let modulus = |nu| LinearElastic::new(200e9, nu).p_wave_modulus();
+    assert_eq!(modulus(0.0), 200e9);
+    assert_relative_eq!(modulus(0.25), 200e9 * 0.75 / (1.25 * 0.5), max_relative = 1e-15);
+    let eps = SMatrix::<f64, 1, 1>::new(1e-3);
+    assert_eq!(LinearElastic::new(200e9, 0.0).stress_increment(&eps)[0], 200e6);
+}
+
+/// ½ σ : D⁻¹ : σ of σ = D : ε is ½ σ : ε, in every dimension.
+#[test]
+fn law_energy_is_half_stress_times_strain() {
+    let law = LinearElastic::new(7.0, 0.3);
+    let eps = Matrix3::new(0.3, 0.1, -0.2, 0.1, -0.4, 0.05, -0.2, 0.05, 0.2);
+    let sigma = law.stress_increment(&eps);
+    assert_relative_eq!(law.energy_density(&sigma), 0.5 * sigma.dot(&eps), max_relative = 1e-14);
+    let eps = eps.fixed_view::<2, 2>(0, 0).into_owned();
+    let sigma = law.stress_increment(&eps);
+    assert_relative_eq!(law.energy_density(&sigma), 0.5 * sigma.dot(&eps), max_relative = 1e-14);
+    let eps = SMatrix::<f64, 1, 1>::new(0.3);
+    let sigma = law.stress_increment(&eps);
+    assert_relative_eq!(law.energy_density(&sigma), 0.5 * sigma.dot(&eps), max_relative = 1e-14);
+}
+
+/// (2) of a rotation is zero, and (17) refuses to turn material inside out.
+#[test]
+fn law_rotation_and_inversion() {
+    assert_eq!(symmetric_part(&Matrix2::new(0.0, -3.0, 3.0, 0.0)), Matrix2::zeros());
+    assert_eq!(symmetric_part(&Matrix2::new(1.0, 4.0, 2.0, 5.0)), Matrix2::new(1.0, 3.0, 3.0, 5.0));
+    assert_eq!(density(10.0, &Matrix2::new(0.2, 9.0, 9.0, 0.05)), Some(8.0));
+    assert_eq!(density(1.0, &Matrix2::new(-0.5, 0.0, 0.0, -0.5)), None);
+    assert_eq!(density(1.0, &Matrix2::new(f64::NAN, 0.0, 0.0, 0.0)), None);
+}
+
+// ---- the sums ------------------------------------------------------------------
+
+/// A 2D block with scattered velocities and stresses, tabulated.
+fn scattered() -> (Grid<2>, State<2>) {
+    let scene = strip(2, &["initial_velocity=[]"]);
+    let model = Model::<2>::of(&scene);
+    let mut state = model.initial_state(&scene);
+    for p in 0..state.particle.len() {
+        let s = p as f64;
+        state.particle.x[p] += Vector2::new((1.7 * s).sin(), (2.3 * s).cos()) * 1e-4;
+        state.particle.v[p] = Vector2::new((0.3 * s).sin(), (0.7 * s).cos());
+        state.particle.sigma[p] = Matrix2::new(s.sin(), s.cos(), s.cos(), (2.0 * s).sin()) * 1e6;
+    }
+    let mut cost = Cost::default();
+    tabulate(&mut state.shape, &mut cost, &Basis::Linear, &model.grid, &state.particle.x).unwrap();
+    (model.grid, state)
+}
+
+/// Σ_I m_I = Σ_p m_p and Σ_I p_I = Σ_p m_p v_p.
+#[test]
+fn sums_keep_mass_and_momentum() {
+    let (_, State { particle, mut node, shape }) = scattered();
+    sums::lumped_mass(&mut node, &particle, &shape);
+    sums::momentum(&mut node, &particle, &shape);
+    let mass: f64 = node.m.iter().sum();
+    let round_off = particle.len() as f64 * f64::EPSILON;
+    assert_relative_eq!(mass, particle.m.iter().sum::<f64>(), max_relative = round_off);
+    let momentum: Vector2<f64> = node.p.iter().sum();
+    assert_relative_eq!(momentum, measure::momentum(&particle), epsilon = round_off * mass);
+}
+
+/// Internal forces do no net work on a rigid motion: Σ_I f_I = 0 and, since
+/// σ is symmetric, Σ_I x_I × f_I = 0.
+#[test]
+fn sums_internal_force_is_in_balance() {
+    let (grid, State { particle, mut node, shape }) = scattered();
+    sums::internal_force(&mut node, &particle, &shape);
+    let scale: f64 = node.f.iter().map(|f| f.norm()).sum();
+    let force: Vector2<f64> = node.f.iter().sum();
+    let torque: f64 = (0..node.len()).map(|I| grid.position(I).perp(&node.f[I])).sum();
+    assert!(scale > 1e3);
+    assert!(force.norm() < 1e-14 * scale, "{force:?}");
+    assert!(torque.abs() < 1e-14 * scale, "{torque:e}");
+}
+
+/// An affine velocity of the nodes gives its gradient at every particle.
+#[test]
+fn sums_velocity_gradient_of_affine_motion() {
+    let (grid, State { particle, mut node, shape }) = scattered();
+    let L = Matrix2::new(0.3, -0.7, 0.2, 0.9);
+    sums::lumped_mass(&mut node, &particle, &shape);
+    for I in 0..node.len() {
+        node.v[I] = Vector2::new(100.0, -50.0) + L * grid.position(I);
+    }
+    for p in 0..particle.len() {
+        let grad_v = sums::velocity_gradient(&node, &shape, p);
+        assert_relative_eq!(grad_v, L, epsilon = 1e-9);
+    }
+}
+
+/// A node with a mass 1e-300 times that of its neighbour sends no particle off.
+#[test]
+fn sums_to_particle_survives_tiny_mass() {
+    let mut shape = Shape::<1>::default();
+    let tiny = 1e-300;
+    shape.push(0, 1.0, SVector::<f64, 1>::new(-1.0));
+    shape.push(1, tiny, SVector::<f64, 1>::new(1.0));
+    shape.end_row();
+    let particle = Particles::at_rest(vec![SVector::<f64, 1>::new(0.0)], 2.0, 1.0);
+    let mut node = lme_mpm::continuum::state::Nodes::<1>::blank(2);
+    sums::lumped_mass(&mut node, &particle, &shape);
+    let force = [SVector::<f64, 1>::new(1e10), SVector::<f64, 1>::new(-1e10)];
+    // f_I / m_I alone would be 5e309; mapped, both halves are f / m_p.
+    let a = sums::to_particle(&force, &node, &shape, 0);
+    assert_eq!(a[0], 0.0);
+}
+
+// ---- whole runs ------------------------------------------------------------------
+
+/// The Dyka bar as a strip in D = 2 or 3, ν = 0, free at its long sides.
+fn strip(dimension: usize, sets: &[&str]) -> lme_mpm::scene::Scene {
+    let list = |first: &str, other: &str| {
+        let mut entries = vec![first];
+        entries.resize(dimension, other);
+        format!("[{}]", entries.join(","))
+    };
+    let (x, xx) = if dimension == 1 { ("", "") } else { ("component='x'\n", "component='xx'\n") };
+    let text = format!(
+        "title = 'strip'\nmethod = 'mpm'\nmass = 'lumped'\nbasis.kind = 'linear'\n\
+         body = {{ length = {length}, density = 7833, youngs_modulus = 200e9, poisson_ratio = 0 }}\n\
+         grid = {{ cells = {cells}, particles_per_cell = {per_cell} }}\n\
+         time = {{ integrator = 'newmark', cfl = 0.5, end = {end} }}\n\
+         boundary.left = 'fixed'\n\
+         [[initial_velocity]]\nfrom = {from}\nto = {length}\nvelocity = {velocity}\n\
+         [[probe]]\nname = 'velocity_end'\nquantity = 'velocity'\n{x}position = {length}\n\
+         [[probe]]\nname = 'stress_three_quarter'\nquantity = 'stress'\n{xx}position = {quarter}\n",
+        length = list("0.1333", "0.01"),
+        cells = list("40", "3"),
+        per_cell = list("2", "2"),
+        from = list("0.099975", "0"),
+        velocity = list("5", "0"),
+        quarter = list("0.099975", "0"),
+        end = 4.0 * transit(),
+    );
+    scene(&text, sets)
+}
+
+/// A strip with ν = 0 is the bar, in 2D and in 3D.
+#[test]
+fn run_strip_equals_bar() {
+    let bar = finished(&strip(1, &[])).history;
+    for dimension in [2, 3] {
+        let strip = finished(&strip(dimension, &[])).history;
+        for (name, scale) in [("velocity_end", 5.0), ("stress_three_quarter", 2e8)] {
+            let (one, many) = (bar.column(name).unwrap(), strip.column(name).unwrap());
+            assert_eq!(one.len(), many.len());
+            for (a, b) in one.iter().zip(&many) {
+                assert!((a - b).abs() < 1e-12 * scale, "{name} in {dimension}D: {a} and {b}");
+            }
+        }
+    }
+}
+
+/// Uniform motion across cells: not one bit of strain or stress, in 1D, 2D and
+/// 3D, when the speed is a power of two and every sum is exact.
+#[test]
+fn run_rigid_motion_is_exactly_free_of_stress() {
+    fn check<const D: usize>(scene: &lme_mpm::scene::Scene) {
+        let model = Model::<D>::of(scene);
+        let mut state = model.initial_state(scene);
+        let start = state.particle.x[0];
+        let rho = state.particle.rho.clone();
+        let v = state.particle.v.clone();
+        march(&model, &mut state, model.steps);
+        let crossed = (state.particle.x[0] - start).component_div(&model.grid.h);
+        assert!(crossed.min() > 3.0, "cells crossed: {crossed:?}");
+        assert!(state.particle.sigma.iter().all(|sigma| *sigma == SMatrix::<f64, D, D>::zeros()));
+        assert_eq!(state.particle.rho, rho);
+        assert_eq!(state.particle.v, v);
+    }
+    check::<1>(&scene(FREE_FLIGHT, &[]));
+    for dimension in [2, 3] {
+        let list = |x: &str| format!("[{}]", vec![x; dimension].join(","));
+        let text = format!(
+            "title = 'flight'\nmethod = 'mpm'\nmass = 'lumped'\nbasis.kind = 'linear'\n\
+             body = {{ length = {}, density = 1000, youngs_modulus = 1e6, poisson_ratio = 0.3 }}\n\
+             [grid]\ncells = {}\nparticles_per_cell = {}\n\
+             beyond = {{ right = 6, top = 6{} }}\n[time]\n\
+             integrator = 'newmark'\ncfl = 0.5\nend = 0.5\n\
+             [[initial_velocity]]\nfrom = {}\nto = {}\nvelocity = {}\n",
+            list("0.7"),
+            list("3"),
+            list("2"),
+            if dimension == 3 { ", front = 6" } else { "" },
+            list("0"),
+            list("0.7"),
+            list("2"),
+        );
+        let scene = scene(&text, &[]);
+        if dimension == 2 { check::<2>(&scene) } else { check::<3>(&scene) }
+    }
+}
+
+/// At any other speed the stress of rigid motion is round-off: below
+/// E ε (v Δt/h) per step.
+#[test]
+fn run_rigid_motion_at_any_speed_is_round_off() {
+    for velocity in [7.3, -0.1, 123.456] {
+        let end = 0.9 / f64::abs(velocity);
+        let sets = [
+            format!("initial_velocity.0.velocity={velocity}"),
+            format!("time.end={end}"),
+            "grid.beyond.left=12".to_string(),
+        ];
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        let scene = scene(FREE_FLIGHT, &sets);
+        let model = Model::<1>::of(&scene);
+        let mut state = model.initial_state(&scene);
+        march(&model, &mut state, model.steps);
+        let per_step = 1e6 * f64::EPSILON * f64::abs(velocity) * model.dt / model.grid.h[0];
+        let bound = 4.0 * per_step * model.steps as f64;
+        let worst = state.particle.sigma.iter().fold(0.0, |worst: f64, s| worst.max(s[0].abs()));
+        assert!(worst < bound, "v = {velocity}: stress {worst:e} above {bound:e}");
+    }
+}
+
+/// Mass, never touched, is the same to the last bit; momentum of a free body
+/// stays to round-off.
+#[test]
+fn run_free_body_keeps_momentum() {
+    let scene = dyka(&["boundary.left=free", "grid.beyond.left=2", "time.end=4e-4"]);
+    let outcome = finished(&scene);
+    let momentum = outcome.history.column("momentum").unwrap();
+    let steps = outcome.cost.steps as f64;
+    for p in &momentum {
+        assert_relative_eq!(*p, momentum[0], max_relative = steps * f64::EPSILON);
+    }
+}
+
+/// The mirrored bar does the mirrored thing.
+#[test]
+fn run_mirror_symmetry() {
+    let here = finished(&dyka(&[]));
+    let there = finished(&dyka(&[
+        "boundary.left=free",
+        "boundary.right=fixed",
+        "grid.beyond.left=1",
+        "grid.beyond.right=0",
+        "initial_velocity.0.from=0",
+        "initial_velocity.0.to=0.033325",
+        "initial_velocity.0.velocity=-5",
+        "probe.0.position=0",
+        "probe.1.position=0.033325",
+    ]));
+    let of = |outcome: &lme_mpm::run::Outcome, name: &str| outcome.particles.column(name).unwrap();
+    for (name, sign, scale) in [("velocity", -1.0, 5.0), ("stress", 1.0, 2e8), ("displacement", -1.0, 1e-4)] {
+        let (right, mut left) = (of(&here, name), of(&there, name));
+        left.reverse();
+        for (a, b) in right.iter().zip(&left) {
+            assert!((a - sign * b).abs() < 1e-11 * scale, "{name}: {a} and {b}");
+        }
+    }
+}
+
+/// Other units of length, time and mass, all powers of two: not one bit
+/// differs but the exponent.
+#[test]
+fn run_units_scale_bit_by_bit() {
+    let here = finished(&dyka(&[]));
+    // 1 m = 2^a new units, 1 s = 2^b, 1 kg = 2^c.
+    for (a, b, c) in [(10, -6, 3), (-40, 30, -20)] {
+        let two = |n: i32| libm::exp2(n as f64);
+        let (length, time, mass) = (two(a), two(b), two(c));
+        let (stress, velocity) = (mass / (length * time * time), length / time);
+        // In 1D the cross-section is one and has no unit: density is mass per
+        // length, and what is called stress is a force.
+        let (density, stress) = (mass / length, stress * length * length);
+        let sets = [
+            format!("body.length={:?}", 0.1333 * length),
+            format!("body.density={:?}", 7833.0 * density),
+            format!("body.youngs_modulus={:?}", 200e9 * stress),
+            format!("time.end={:?}", 1.05521074812570e-4 * time),
+            format!("initial_velocity.0.from={:?}", 0.099975 * length),
+            format!("initial_velocity.0.to={:?}", 0.1333 * length),
+            format!("initial_velocity.0.velocity={:?}", 5.0 * velocity),
+            format!("probe.0.position={:?}", 0.1333 * length),
+            format!("probe.1.position={:?}", 0.099975 * length),
+        ];
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        let there = finished(&dyka(&sets));
+        for (name, unit) in [
+            ("velocity_end", velocity),
+            ("stress_three_quarter", stress),
+            ("t", time),
+            ("momentum", mass * velocity),
+            ("kinetic_energy", mass * velocity * velocity),
+        ] {
+            let (one, other) = (here.history.column(name).unwrap(), there.history.column(name).unwrap());
+            let scaled: Vec<f64> = one.iter().map(|x| x * unit).collect();
+            assert_eq!(scaled, other, "{name} with units 2^({a}, {b}, {c})");
+        }
+    }
+}
+
+/// The origin is a matter of taste: a scene moved by 2^20 body lengths gives
+/// the same bits.
+#[test]
+fn run_translation_changes_nothing() {
+    let here = finished(&dyka(&[]));
+    let shift = libm::exp2(20.0);
+    let sets = [
+        format!("body.origin={shift:?}"),
+        format!("initial_velocity.0.from={:?}", shift + 0.099975),
+        format!("initial_velocity.0.to={:?}", shift + 0.1333),
+        format!("probe.0.position={:?}", shift + 0.1333),
+        format!("probe.1.position={:?}", shift + 0.09),
+    ];
+    let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+    let there = finished(&dyka(&sets));
+    for name in ["velocity_end", "kinetic_energy", "strain_energy", "momentum"] {
+        assert_eq!(here.history.column(name), there.history.column(name), "{name}");
+    }
+    for name in ["velocity", "stress", "displacement"] {
+        assert_eq!(here.particles.column(name), there.particles.column(name), "{name}");
+    }
+}
+
+/// What a scene does not declare is not computed, and what is computed is
+/// counted: one table per step and one at the start, 2^D pairs per particle.
+#[test]
+fn run_cost_is_what_the_scene_needs() {
+    for dimension in [1, 2, 3] {
+        let scene = strip(dimension, &[]);
+        let outcome = finished(&scene);
+        let (particles, _, steps) = scene.sizes();
+        let cost = outcome.cost;
+        assert_eq!(cost.steps, steps as u64);
+        assert_eq!(cost.basis_evaluations, (particles * (steps + 1.0)) as u64);
+        assert_eq!(cost.particle_node_pairs, cost.basis_evaluations << dimension);
+        assert_eq!(cost.exponentials, 0);
+        assert_eq!(cost.newton_iterations, 0);
+        let d = dimension as u64;
+        assert_eq!(cost.bytes_per_particle, 8 * (2 + 2 * d + 2 * d * d));
+    }
+    assert_eq!(Particles::<1>::BYTES, 48);
+}

@@ -1,0 +1,54 @@
+//! What several tests share: scenes with changes, runs, and orders.
+#![allow(dead_code)] // each test file is its own crate and uses a part of this
+
+use lme_mpm::continuum::state::State;
+use lme_mpm::cost::Cost;
+use lme_mpm::fault::Moment;
+use lme_mpm::model::Model;
+use lme_mpm::run::{Outcome, run};
+use lme_mpm::scene::{DYKA, Scene};
+use lme_mpm::time;
+
+pub const FREE_FLIGHT: &str = include_str!("../../data/scenes/free-flight.toml");
+
+/// L/c of the Dyka bar [s], from c = √(E/ρ).
+pub fn transit() -> f64 {
+    0.1333 / (200e9_f64 / 7833.0).sqrt()
+}
+
+/// A scene from `text` with the changes `KEY=VALUE`.
+pub fn scene(text: &str, sets: &[&str]) -> Scene {
+    let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
+    Scene::parse("test", "test.toml", text, &sets).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The Dyka bar with the changes `KEY=VALUE`.
+pub fn dyka(sets: &[&str]) -> Scene {
+    scene(DYKA, sets)
+}
+
+/// Runs a scene to its end.
+pub fn finished(scene: &Scene) -> Outcome {
+    run(scene, &mut |_| {}).unwrap_or_else(|stopped| panic!("{}", stopped.breakdown))
+}
+
+/// Takes `steps` steps of `model` from `state`, which has not been started.
+pub fn march<const D: usize>(model: &Model<D>, state: &mut State<D>, steps: usize) -> Cost {
+    let mut cost = Cost::default();
+    time::start(state, model, &mut cost).unwrap();
+    for step in 1..=steps {
+        let moment = Moment { step, time: step as f64 * model.dt };
+        time::advance(state, model, moment, &mut cost).unwrap();
+    }
+    cost
+}
+
+/// The exponent of error ∝ h^slope by least squares on logarithms.
+pub fn slope(h: &[f64], error: &[f64]) -> f64 {
+    let n = h.len() as f64;
+    let (x, y): (Vec<f64>, Vec<f64>) =
+        h.iter().zip(error).map(|(h, e)| (libm::log(*h), libm::log(*e))).unzip();
+    let (mean_x, mean_y) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+    let cross: f64 = x.iter().zip(&y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
+    cross / x.iter().map(|x| (x - mean_x) * (x - mean_x)).sum::<f64>()
+}
