@@ -35,35 +35,19 @@ pub enum Breakdown {
         "particle {particle} left the grid at {moment}: it stands at {position:?} m from the \
          body's lower corner; give it room with `grid.beyond`"
     )]
-    LeftGrid {
-        particle: usize,
-        moment: Moment,
-        position: Vec<f64>,
-    },
+    LeftGrid { particle: usize, moment: Moment, position: Vec<f64> },
     #[error(
         "particle {particle} turned inside out at {moment}: tr Δε = {strain:e} in one step, \
          and 1 + tr Δε must stay above 0"
     )]
-    Inverted {
-        particle: usize,
-        moment: Moment,
-        strain: f64,
-    },
+    Inverted { particle: usize, moment: Moment, strain: f64 },
     #[error("the {symbol} of particle {particle} is not a finite number at {moment}")]
-    NotFinite {
-        particle: usize,
-        moment: Moment,
-        symbol: &'static str,
-    },
+    NotFinite { particle: usize, moment: Moment, symbol: &'static str },
     #[error(
         "the run blew up at {moment}: its energy is {ratio:e} times that of the start, and \
          particle {particle} holds most of it"
     )]
-    Diverged {
-        particle: usize,
-        moment: Moment,
-        ratio: f64,
-    },
+    Diverged { particle: usize, moment: Moment, ratio: f64 },
 }
 
 impl Breakdown {
@@ -140,26 +124,13 @@ pub enum Fault {
     #[error("{0}")]
     Scene(Box<SceneError>),
     #[error("cannot read {path}: {source}")]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     #[error("cannot write {path}: {source}")]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Write { path: PathBuf, source: std::io::Error },
     #[error("{path}, line {line}: {problem}; allowed: {allowed}")]
-    Points {
-        path: String,
-        line: u64,
-        problem: String,
-        allowed: String,
-    },
+    Points { path: String, line: u64, problem: String, allowed: String },
     #[error("no exact solution is known for this scene: {why}")]
     NoExact { why: &'static str },
-    #[error("cannot draw {what}: {why}")]
-    Figure { what: String, why: String },
     #[error("{breakdown}\n{advice}")]
     Run {
         breakdown: Breakdown,
@@ -178,8 +149,8 @@ impl Fault {
     }
 }
 
-impl From<SceneError> for Fault {
-    fn from(error: SceneError) -> Self {
-        Fault::Scene(Box::new(error))
+impl From<Box<SceneError>> for Fault {
+    fn from(error: Box<SceneError>) -> Self {
+        Fault::Scene(error)
     }
 }

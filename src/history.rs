@@ -65,11 +65,7 @@ pub fn shortest(x: f64) -> String {
 /// `stale` ones of an earlier run, so that a directory never mixes two runs.
 ///
 /// Errors: [`Fault::Write`] with the path.
-pub fn write_all(
-    dir: &Path,
-    files: &[(String, Vec<u8>)],
-    stale: &[String],
-) -> Result<(), Fault> {
+pub fn write_all(dir: &Path, files: &[(String, Vec<u8>)], stale: &[String]) -> Result<(), Fault> {
     let fault = |path: &Path, source| Fault::Write { path: path.to_path_buf(), source };
     let temporary = |name: &str| dir.join(format!(".{name}.part"));
     for (name, bytes) in files {

@@ -21,7 +21,10 @@ const RED: anstyle::Style =
 /// Without a command it runs the Dyka and Ingel bar, which ships inside the
 /// program, and writes the results to out/dyka.
 #[derive(Parser)]
-#[command(version, after_help = "Example:\n  lme-mpm            run the built-in bar\n  lme-mpm run --help what a run reads and writes")]
+#[command(
+    version,
+    after_help = "Example:\n  lme-mpm            run the built-in bar\n  lme-mpm run --help what a run reads and writes"
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
@@ -33,7 +36,9 @@ enum Command {
     ///
     /// Writes history.csv, particles.csv, summary.csv, cost.csv and one SVG
     /// for each probe. A run that breaks down leaves history.failed.csv only.
-    #[command(after_help = "Example:\n  lme-mpm run data/scenes/dyka.toml --set grid.cells=160 --set time.cfl=0.9 --out out/fine")]
+    #[command(
+        after_help = "Example:\n  lme-mpm run data/scenes/dyka.toml --set grid.cells=160 --set time.cfl=0.9 --out out/fine"
+    )]
     Run {
         /// The scene file (TOML, SI units)
         scene: PathBuf,
@@ -52,7 +57,9 @@ enum Command {
     /// Reads CSV with the columns x,t (m, s) and prints CSV
     /// x,t,velocity,stress,displacement (m, s, m/s, Pa, m), where x is the
     /// place of the material point at t = 0.
-    #[command(after_help = "Example:\n  printf 'x,t\\n0.1333,1e-5\\n' | lme-mpm exact data/scenes/dyka.toml --points -")]
+    #[command(
+        after_help = "Example:\n  printf 'x,t\\n0.1333,1e-5\\n' | lme-mpm exact data/scenes/dyka.toml --points -"
+    )]
     Exact {
         /// The scene file (TOML, SI units)
         scene: PathBuf,
@@ -101,7 +108,7 @@ fn run(scene: &Scene, out: Option<PathBuf>, quiet: bool) -> Result<(), Fault> {
     }
     let tell = (steps / 200).max(1);
     let lines = report::run_into(&dir, scene, &mut |step| {
-        if step as u64 % tell == 0 {
+        if (step as u64).is_multiple_of(tell) {
             bar.set_position(step as u64);
         }
     });

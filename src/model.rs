@@ -119,11 +119,8 @@ impl<const D: usize> Model<D> {
                 particle.v[p] = SVector::from_fn(|d, _| region.velocity[d]);
             }
         }
-        State {
-            particle,
-            node: Nodes::blank(self.grid.nodes()),
-            shape: Shape::default(),
-        }
+        let shape = Shape::blank(count);
+        State { particle, node: Nodes::blank(self.grid.nodes()), shape }
     }
 }
 

@@ -71,7 +71,8 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
 
 /// `quantity,value,unit`.
 fn lines_csv(lines: &[Line]) -> Result<Vec<u8>, Fault> {
-    let row = |line: &Line| vec![line.quantity.clone(), shortest(line.value), line.unit.to_string()];
+    let row =
+        |line: &Line| vec![line.quantity.clone(), shortest(line.value), line.unit.to_string()];
     csv(&["quantity", "value", "unit"], lines.iter().map(row))
 }
 
@@ -80,11 +81,7 @@ fn lines_csv(lines: &[Line]) -> Result<Vec<u8>, Fault> {
 ///
 /// Errors: [`Fault::NoExact`]; [`Fault::Points`] with the line of the first
 /// point that is not a number, outside the body, or before t = 0.
-pub fn exact_at(
-    scene: &Scene,
-    name: &str,
-    points: impl std::io::Read,
-) -> Result<Vec<u8>, Fault> {
+pub fn exact_at(scene: &Scene, name: &str, points: impl std::io::Read) -> Result<Vec<u8>, Fault> {
     let exact = Exact::of(scene)?;
     let (origin, length) = (scene.body.origin[0], scene.body.length[0]);
     let fault = |line: u64, problem: String, allowed: String| Fault::Points {

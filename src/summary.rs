@@ -28,9 +28,10 @@ pub struct Scales {
 
 impl Scales {
     pub fn of(scene: &Scene) -> Self {
-        let speeds = scene.initial_velocity.iter().map(|region| {
-            libm::sqrt(region.velocity.iter().map(|v| v * v).sum())
-        });
+        let speeds = scene
+            .initial_velocity
+            .iter()
+            .map(|region| libm::sqrt(region.velocity.iter().map(|v| v * v).sum()));
         let v0 = speeds.fold(0.0, f64::max);
         let c = wave_speed(&scene.body);
         Scales {
@@ -85,8 +86,11 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<Line> {
         }
     }
     let kinetic = column("kinetic_energy");
-    let total: Vec<f64> =
-        kinetic.iter().zip(column("strain_energy")).map(|(kinetic, strain)| kinetic + strain).collect();
+    let total: Vec<f64> = kinetic
+        .iter()
+        .zip(column("strain_energy"))
+        .map(|(kinetic, strain)| kinetic + strain)
+        .collect();
     if let (Some(&first), Some(&last)) = (total.first(), total.last()) {
         add("energy_start".into(), first, "J");
         add("energy_end".into(), last, "J");

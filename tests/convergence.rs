@@ -37,9 +37,8 @@ fn orders(reading: &str) -> (f64, f64) {
             (rms(u_n.into_iter().zip(u.clone())), rms(v_n.into_iter().zip(v.clone())))
         })
         .collect();
-    let of = |pick: fn(&(f64, f64)) -> f64| {
-        slope(&dt, &errors.iter().map(pick).collect::<Vec<_>>())
-    };
+    let of =
+        |pick: fn(&(f64, f64)) -> f64| slope(&dt, &errors.iter().map(pick).collect::<Vec<_>>());
     (of(|e| e.0), of(|e| e.1))
 }
 

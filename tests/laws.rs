@@ -38,7 +38,7 @@ fn point<const D: usize>(s: [f64; 3]) -> SVector<f64, D> {
 }
 
 fn row<const D: usize>(x: SVector<f64, D>) -> Vec<(usize, f64, SVector<f64, D>)> {
-    let (mut shape, mut cost) = (Shape::default(), Cost::default());
+    let (mut shape, mut cost) = (Shape::blank(0), Cost::default());
     tabulate(&mut shape, &mut cost, &Basis::Linear, &grid::<D>(), &[x]).unwrap();
     shape.of(0).map(|(I, N, grad)| (I, N, *grad)).collect()
 }
@@ -126,7 +126,7 @@ fn basis_linear_on_nodes_and_edges() {
 fn basis_names_the_particle_outside() {
     let inside = Vector2::new(0.1, 0.1);
     for outside in [Vector2::new(-0.2, 0.1), Vector2::new(0.1, 1.7), Vector2::new(f64::NAN, 0.1)] {
-        let (mut shape, mut cost) = (Shape::default(), Cost::default());
+        let (mut shape, mut cost) = (Shape::blank(0), Cost::default());
         let x = [inside, outside];
         let fault = tabulate(&mut shape, &mut cost, &Basis::Linear, &grid::<2>(), &x).unwrap_err();
         assert_eq!(fault.particle, 1);
@@ -143,8 +143,16 @@ fn law_plane_strain() {
     let eps = Matrix2::new(1e-3, 2e-4, 2e-4, -4e-4);
     let sigma = law.stress_increment(&eps);
     let factor = E / ((1.0 + nu) * (1.0 - 2.0 * nu));
-    assert_relative_eq!(sigma[(0, 0)], factor * ((1.0 - nu) * 1e-3 - nu * 4e-4), max_relative = 1e-14);
-    assert_relative_eq!(sigma[(1, 1)], factor * (nu * 1e-3 - (1.0 - nu) * 4e-4), max_relative = 1e-14);
+    assert_relative_eq!(
+        sigma[(0, 0)],
+        factor * ((1.0 - nu) * 1e-3 - nu * 4e-4),
+        max_relative = 1e-14
+    );
+    assert_relative_eq!(
+        sigma[(1, 1)],
+        factor * (nu * 1e-3 - (1.0 - nu) * 4e-4),
+        max_relative = 1e-14
+    );
     assert_relative_eq!(sigma[(0, 1)], E / (1.0 + nu) * 2e-4, max_relative = 1e-14);
     assert_eq!(sigma[(0, 1)], sigma[(1, 0)]);
 }
@@ -247,7 +255,7 @@ fn sums_velocity_gradient_of_affine_motion() {
 /// A node with a mass 1e-300 times that of its neighbour sends no particle off.
 #[test]
 fn sums_to_particle_survives_tiny_mass() {
-    let mut shape = Shape::<1>::default();
+    let mut shape = Shape::<1>::blank(0);
     let tiny = 1e-300;
     shape.push(0, 1.0, SVector::<f64, 1>::new(-1.0));
     shape.push(1, tiny, SVector::<f64, 1>::new(1.0));
@@ -399,7 +407,9 @@ fn run_mirror_symmetry() {
         "probe.1.position=0.033325",
     ]));
     let of = |outcome: &lme_mpm::run::Outcome, name: &str| outcome.particles.column(name).unwrap();
-    for (name, sign, scale) in [("velocity", -1.0, 5.0), ("stress", 1.0, 2e8), ("displacement", -1.0, 1e-4)] {
+    for (name, sign, scale) in
+        [("velocity", -1.0, 5.0), ("stress", 1.0, 2e8), ("displacement", -1.0, 1e-4)]
+    {
         let (right, mut left) = (of(&here, name), of(&there, name));
         left.reverse();
         for (a, b) in right.iter().zip(&left) {
@@ -441,7 +451,8 @@ fn run_units_scale_bit_by_bit() {
             ("momentum", mass * velocity),
             ("kinetic_energy", mass * velocity * velocity),
         ] {
-            let (one, other) = (here.history.column(name).unwrap(), there.history.column(name).unwrap());
+            let (one, other) =
+                (here.history.column(name).unwrap(), there.history.column(name).unwrap());
             let scaled: Vec<f64> = one.iter().map(|x| x * unit).collect();
             assert_eq!(scaled, other, "{name} with units 2^({a}, {b}, {c})");
         }

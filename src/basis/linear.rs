@@ -12,7 +12,11 @@ use nalgebra::SVector;
 /// ξ = (x − x_I) / h in the cell; in D dimensions N_Ip is their product, and
 /// ∂N_Ip/∂x_d replaces factor d by ∓1/h_d. On a face the gradient is that of
 /// the cell above. `None` when x_p is outside the grid.
-pub fn row<const D: usize>(shape: &mut Shape<D>, grid: &Grid<D>, x_p: &SVector<f64, D>) -> Option<()> {
+pub fn row<const D: usize>(
+    shape: &mut Shape<D>,
+    grid: &Grid<D>,
+    x_p: &SVector<f64, D>,
+) -> Option<()> {
     let at = grid.locate(x_p)?;
     for corner in 0..Grid::<D>::CORNERS {
         let upper = Grid::<D>::corner(corner);

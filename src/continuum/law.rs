@@ -53,8 +53,7 @@ impl LinearElastic {
     /// D⁻¹ : σ = (σ − λ tr(σ) / (dλ + 2μ) 1) / 2μ in d dimensions.
     pub fn energy_density<const D: usize>(&self, sigma: &SMatrix<f64, D, D>) -> f64 {
         let share = self.lambda / (D as f64 * self.lambda + 2.0 * self.mu);
-        let eps =
-            (sigma - SMatrix::identity() * (share * sigma.trace())) * (1.0 / (2.0 * self.mu));
+        let eps = (sigma - SMatrix::identity() * (share * sigma.trace())) * (1.0 / (2.0 * self.mu));
         0.5 * sigma.dot(&eps)
     }
 }

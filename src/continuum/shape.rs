@@ -24,16 +24,12 @@ pub struct Shape<const D: usize> {
 }
 // ANCHOR_END: shape
 
-impl<const D: usize> Default for Shape<D> {
-    fn default() -> Self {
-        Shape {
-            start: vec![0],
-            entry: Vec::new(),
-        }
-    }
-}
-
 impl<const D: usize> Shape<D> {
+    /// A table in which each of `particles` sees no node.
+    pub fn blank(particles: usize) -> Self {
+        Shape { start: vec![0; particles + 1], entry: Vec::new() }
+    }
+
     /// Forgets all rows and keeps the memory.
     pub fn clear(&mut self) {
         self.start.truncate(1);
@@ -62,10 +58,8 @@ impl<const D: usize> Shape<D> {
     // ANCHOR: pairs
     /// Σ_p Σ_I: every pair as (I, p, N_Ip, ∇N_Ip), particle by particle.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize, f64, &SVector<f64, D>)> {
-        (0..self.start.len() - 1).flat_map(move |p| {
-            self.of(p)
-                .map(move |(I, N_Ip, grad_N_Ip)| (I, p, N_Ip, grad_N_Ip))
-        })
+        (0..self.start.len() - 1)
+            .flat_map(move |p| self.of(p).map(move |(I, N_Ip, grad_N_Ip)| (I, p, N_Ip, grad_N_Ip)))
     }
 
     /// Σ_I for one particle: its pairs as (I, N_Ip, ∇N_Ip).

@@ -10,11 +10,7 @@ use nalgebra::{SMatrix, SVector};
 /// (13) lumped by rows: m_I += Σ_p m_p N_Ip  [kg].
 ///
 /// Since Σ_J N_Jp = 1, the row sum of m_IJ = Σ_p N_Ip m_p N_Jp is this.
-pub fn lumped_mass<const D: usize>(
-    node: &mut Nodes<D>,
-    particle: &Particles<D>,
-    shape: &Shape<D>,
-) {
+pub fn lumped_mass<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, shape: &Shape<D>) {
     for (I, p, N_Ip, _) in shape.pairs() {
         node.m[I] += particle.m[p] * N_Ip;
     }

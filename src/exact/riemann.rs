@@ -121,16 +121,14 @@ impl Bar {
     /// v, σ and u at 0 ≤ `x` ≤ L [m] and `t` ≥ 0 [s].
     pub fn at(&self, x: f64, t: f64) -> Fields {
         let (periods, s) = self.travel(t);
-        let R = Vector2::new(
-            self.invariant(Family::I, x, s),
-            self.invariant(Family::II, x, s),
-        );
+        let R = Vector2::new(self.invariant(Family::I, x, s), self.invariant(Family::II, x, s));
         let phi = eigenvectors(self.Z()) * R; // (51), (59)
         let u = self.travelled(Family::I, x, s) + self.travelled(Family::II, x, s);
+        // + 0.0 turns a reflected −0 into 0.
         Fields {
-            stress: phi[0],
-            velocity: phi[1],
-            displacement: u / self.c() + periods * self.drift(),
+            stress: phi[0] + 0.0,
+            velocity: phi[1] + 0.0,
+            displacement: u / self.c() + periods * self.drift() + 0.0,
         }
     }
     // ANCHOR_END: at
@@ -166,7 +164,8 @@ impl Bar {
     fn drift(&self) -> f64 {
         match self.ends {
             [End::Free, End::Free] => {
-                4.0 / self.c() * self.patches.iter().map(|a| a.velocity * (a.to - a.from)).sum::<f64>()
+                4.0 / self.c()
+                    * self.patches.iter().map(|a| a.velocity * (a.to - a.from)).sum::<f64>()
             }
             _ => 0.0,
         }

@@ -16,9 +16,11 @@ const fn may(path: &'static str, allowed: &'static str) -> Key {
     Key { path, required: false, allowed }
 }
 
-const SIDE: &str = "\"fixed\" or \"free\", or one of them for each component, as in { x = \"fixed\" }";
+const SIDE: &str =
+    "\"fixed\" or \"free\", or one of them for each component, as in { x = \"fixed\" }";
 const COMPONENT: &str = "\"fixed\" or \"free\"";
-const BEYOND: &str = "a whole number of cells from 0 up; without it 0 beyond a fixed side, 1 beyond a free one";
+const BEYOND: &str =
+    "a whole number of cells from 0 up; without it 0 beyond a fixed side, 1 beyond a free one";
 
 /// All keys, in the order in which a scene is read aloud.
 pub const KEYS: &[Key] = &[
@@ -26,7 +28,10 @@ pub const KEYS: &[Key] = &[
     must("method", "\"mpm\""),
     must("mass", "\"lumped\""),
     must("body", "a table"),
-    must("body.length", "a length above 0 in m, one for each axis: their number is the dimension, 1 to 3"),
+    must(
+        "body.length",
+        "a length above 0 in m, one for each axis: their number is the dimension, 1 to 3",
+    ),
     may("body.origin", "the body's lower corner in m, one number for each axis; 0 without it"),
     must("body.density", "a number above 0, in kg/m³"),
     must("body.youngs_modulus", "a number above 0, in Pa"),
@@ -34,7 +39,10 @@ pub const KEYS: &[Key] = &[
     must("grid", "a table"),
     must("grid.cells", "a whole number from 1 up over the body's length, one for each axis"),
     must("grid.particles_per_cell", "a whole number from 1 to 64, one for each axis"),
-    may("grid.beyond", "a table of cells beyond the body, with the keys left, right, bottom, top, back, front"),
+    may(
+        "grid.beyond",
+        "a table of cells beyond the body, with the keys left, right, bottom, top, back, front",
+    ),
     may("grid.beyond.left", BEYOND),
     may("grid.beyond.right", BEYOND),
     may("grid.beyond.bottom", BEYOND),
@@ -74,14 +82,20 @@ pub const KEYS: &[Key] = &[
     may("boundary.front.y", COMPONENT),
     may("boundary.front.z", COMPONENT),
     may("initial_velocity", "a list of regions, [[initial_velocity]]"),
-    must("initial_velocity.from", "the region's lower corner in m, inside the body, one number for each axis"),
+    must(
+        "initial_velocity.from",
+        "the region's lower corner in m, inside the body, one number for each axis",
+    ),
     must("initial_velocity.to", "the region's upper corner in m, above `from`, inside the body"),
     must("initial_velocity.velocity", "a velocity in m/s, one number for each axis"),
     may("probe", "a list of probes, [[probe]]"),
     must("probe.name", "a name of letters, digits and _, used once"),
     must("probe.quantity", "\"velocity\", \"stress\" or \"displacement\""),
     may("probe.component", "in 2D and 3D: x, y, z, for stress two of them as in \"xy\""),
-    must("probe.position", "a point of the body in m, one number for each axis; the nearest particle is read"),
+    must(
+        "probe.position",
+        "a point of the body in m, one number for each axis; the nearest particle is read",
+    ),
     may("output", "a table"),
     may("output.every", "a whole number from 1 up: record every so many steps; 1 without it"),
 ];
@@ -105,9 +119,14 @@ pub fn children(parent: &str) -> impl Iterator<Item = &'static Key> {
 
 /// The candidate that `word` was probably meant to be.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
+    // The first measure favours a common beginning, the second swapped letters.
+    let likeness = |candidate: &str| {
+        strsim::jaro_winkler(word, candidate)
+            .max(strsim::normalized_damerau_levenshtein(word, candidate))
+    };
     candidates
-        .map(|candidate| (strsim::jaro_winkler(word, candidate), candidate))
+        .map(|candidate| (likeness(candidate), candidate))
         .max_by(|a, b| a.0.total_cmp(&b.0))
-        .filter(|(likeness, _)| *likeness > 0.7)
+        .filter(|(likeness, _)| *likeness > 0.65)
         .map(|(_, candidate)| candidate.to_string())
 }

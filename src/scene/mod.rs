@@ -4,6 +4,7 @@
 //! means free sides, no region of initial velocity means a body at rest, no
 //! probe means no probe column. [`keys::KEYS`] lists every key.
 
+mod file;
 pub mod keys;
 mod read;
 mod source;
@@ -146,16 +147,19 @@ impl Scene {
     /// Errors: [`Fault::Read`]; [`Fault::Scene`] with file, line, key and what
     /// is allowed.
     pub fn open(path: &Path, sets: &[String]) -> Result<Scene, Fault> {
-        let text = std::fs::read_to_string(path).map_err(|source| Fault::Read {
-            path: path.to_path_buf(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| Fault::Read { path: path.to_path_buf(), source })?;
         let name = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy());
         Ok(Scene::parse(&name, &path.display().to_string(), &text, sets)?)
     }
 
     /// Reads a scene from `text`; `path` is named in errors.
-    pub fn parse(name: &str, path: &str, text: &str, sets: &[String]) -> Result<Scene, SceneError> {
+    pub fn parse(
+        name: &str,
+        path: &str,
+        text: &str,
+        sets: &[String],
+    ) -> Result<Scene, Box<SceneError>> {
         read::scene(name, &source::Source::new(path, text, sets))
     }
 }

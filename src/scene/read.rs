@@ -1,143 +1,15 @@
-//! From TOML to a checked [`Scene`]: shapes by serde, ranges by hand.
+//! From the file as written to a checked [`Scene`]: every value in range.
 
+use super::file::*;
 use super::*;
 use crate::fault::SceneError;
 use crate::reading::StepEight;
 use crate::scene::keys::nearest;
 use crate::scene::source::Source;
-use serde::Deserialize;
-use serde::de::{Deserializer, IntoDeserializer, SeqAccess, Visitor, value};
 use std::collections::BTreeMap;
 use std::fmt;
-use std::marker::PhantomData;
 use std::ops::Range;
 use toml::Spanned;
-
-/// The file as written: every value with its place.
-#[derive(Deserialize)]
-struct File {
-    title: String,
-    method: Spanned<String>,
-    mass: Spanned<String>,
-    body: FileBody,
-    grid: FileGrid,
-    basis: FileBasis,
-    time: FileTime,
-    #[serde(default)]
-    boundary: BTreeMap<String, Spanned<FileSide>>,
-    #[serde(default)]
-    initial_velocity: Vec<FileRegion>,
-    #[serde(default)]
-    probe: Vec<FileProbe>,
-    #[serde(default)]
-    output: FileOutput,
-}
-
-#[derive(Deserialize)]
-struct FileBody {
-    length: Spanned<PerAxis<f64>>,
-    origin: Option<Spanned<PerAxis<f64>>>,
-    density: Spanned<f64>,
-    youngs_modulus: Spanned<f64>,
-    poisson_ratio: Spanned<f64>,
-}
-
-#[derive(Deserialize)]
-struct FileGrid {
-    cells: Spanned<PerAxis<i64>>,
-    particles_per_cell: Spanned<PerAxis<i64>>,
-    #[serde(default)]
-    beyond: BTreeMap<String, Spanned<i64>>,
-}
-
-#[derive(Deserialize)]
-struct FileBasis {
-    kind: Spanned<String>,
-}
-
-#[derive(Deserialize)]
-struct FileTime {
-    integrator: Spanned<String>,
-    reading: Option<Spanned<String>>,
-    cfl: Spanned<f64>,
-    end: Spanned<f64>,
-}
-
-#[derive(Deserialize)]
-struct FileRegion {
-    from: Spanned<PerAxis<f64>>,
-    to: Spanned<PerAxis<f64>>,
-    velocity: Spanned<PerAxis<f64>>,
-}
-
-#[derive(Deserialize)]
-struct FileProbe {
-    name: Spanned<String>,
-    quantity: Spanned<String>,
-    component: Option<Spanned<String>>,
-    position: Spanned<PerAxis<f64>>,
-}
-
-#[derive(Deserialize, Default)]
-struct FileOutput {
-    every: Option<Spanned<i64>>,
-}
-
-/// A number, or a list with one number for each axis.
-struct PerAxis<T>(Vec<T>);
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for PerAxis<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct OneOrMany<T>(PhantomData<T>);
-        impl<'de, T: Deserialize<'de>> Visitor<'de> for OneOrMany<T> {
-            type Value = PerAxis<T>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number or a list of numbers")
-            }
-            fn visit_i64<E: serde::de::Error>(self, x: i64) -> Result<Self::Value, E> {
-                let one: value::I64Deserializer<E> = x.into_deserializer();
-                T::deserialize(one).map(|x| PerAxis(vec![x]))
-            }
-            fn visit_f64<E: serde::de::Error>(self, x: f64) -> Result<Self::Value, E> {
-                let one: value::F64Deserializer<E> = x.into_deserializer();
-                T::deserialize(one).map(|x| PerAxis(vec![x]))
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
-                let mut many = Vec::new();
-                while let Some(x) = seq.next_element()? {
-                    many.push(x);
-                }
-                Ok(PerAxis(many))
-            }
-        }
-        deserializer.deserialize_any(OneOrMany(PhantomData))
-    }
-}
-
-/// One condition for a whole side, or one for each component.
-enum FileSide {
-    Whole(String),
-    Each(BTreeMap<String, Spanned<String>>),
-}
-
-impl<'de> Deserialize<'de> for FileSide {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Side;
-        impl<'de> Visitor<'de> for Side {
-            type Value = FileSide;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a string or a table of components")
-            }
-            fn visit_str<E>(self, whole: &str) -> Result<FileSide, E> {
-                Ok(FileSide::Whole(whole.to_string()))
-            }
-            fn visit_map<A: serde::de::MapAccess<'de>>(self, map: A) -> Result<FileSide, A::Error> {
-                BTreeMap::deserialize(value::MapAccessDeserializer::new(map)).map(FileSide::Each)
-            }
-        }
-        deserializer.deserialize_any(Side)
-    }
-}
 
 /// Names of the axes and of their two sides.
 const AXES: [(&str, [&str; 2]); 3] =
@@ -158,7 +30,7 @@ impl Check<'_> {
         key: &str,
         value: &Spanned<f64>,
         good: impl Fn(f64) -> bool,
-    ) -> Result<f64, SceneError> {
+    ) -> Result<f64, Box<SceneError>> {
         let x = *value.get_ref();
         if x.is_finite() && good(x) {
             return Ok(x);
@@ -172,7 +44,7 @@ impl Check<'_> {
         key: &str,
         value: &Spanned<PerAxis<T>>,
         good: impl Fn(usize, T) -> bool,
-    ) -> Result<Vec<T>, SceneError> {
+    ) -> Result<Vec<T>, Box<SceneError>> {
         let list = &value.get_ref().0;
         if list.len() != self.dimension {
             let problem = format!(
@@ -197,7 +69,7 @@ impl Check<'_> {
         text: &str,
         span: Range<usize>,
         choices: &[(&str, T)],
-    ) -> Result<T, SceneError> {
+    ) -> Result<T, Box<SceneError>> {
         if let Some((_, choice)) = choices.iter().find(|(name, _)| *name == text) {
             return Ok(*choice);
         }
@@ -216,7 +88,7 @@ fn counted(n: usize, word: &str) -> String {
 }
 
 /// Reads and checks a scene.
-pub fn scene(name: &str, source: &Source) -> Result<Scene, SceneError> {
+pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
     let file: File = source.read()?;
     let length = &file.body.length;
     let dimension = length.get_ref().0.len();
@@ -232,12 +104,8 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, SceneError> {
         file.method.span(),
         &[("mpm", Method::Mpm)],
     )?;
-    let mass = check.choose(
-        "mass",
-        file.mass.get_ref(),
-        file.mass.span(),
-        &[("lumped", Mass::Lumped)],
-    )?;
+    let mass =
+        check.choose("mass", file.mass.get_ref(), file.mass.span(), &[("lumped", Mass::Lumped)])?;
     let kind = &file.basis.kind;
     let basis =
         check.choose("basis.kind", kind.get_ref(), kind.span(), &[("linear", Basis::Linear)])?;
@@ -274,7 +142,7 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-fn body(check: &Check, file: &FileBody) -> Result<Body, SceneError> {
+fn body(check: &Check, file: &FileBody) -> Result<Body, Box<SceneError>> {
     let positive = |x: f64| x > 0.0;
     let body = Body {
         length: check.axes("body.length", &file.length, |_, x| x.is_finite() && x > 0.0)?,
@@ -284,23 +152,22 @@ fn body(check: &Check, file: &FileBody) -> Result<Body, SceneError> {
         },
         density: check.number("body.density", &file.density, positive)?,
         youngs_modulus: check.number("body.youngs_modulus", &file.youngs_modulus, positive)?,
-        poisson_ratio: check.number("body.poisson_ratio", &file.poisson_ratio, |nu| {
-            -1.0 < nu && nu < 0.5
-        })?,
+        poisson_ratio: check
+            .number("body.poisson_ratio", &file.poisson_ratio, |nu| -1.0 < nu && nu < 0.5)?,
     };
     let c = crate::model::wave_speed(&body);
     if !(c.is_finite() && c > 0.0) {
         let problem = format!("with body.density it gives the wave speed {c:e} m/s");
-        let mut error = check.source.error("body.youngs_modulus", file.youngs_modulus.span(), problem);
+        let mut error =
+            check.source.error("body.youngs_modulus", file.youngs_modulus.span(), problem);
         error.allowed = "moduli whose wave speed √((λ + 2μ)/ρ) is a finite number above 0".into();
         return Err(error);
     }
     Ok(body)
 }
 
-fn time(check: &Check, file: &FileTime) -> Result<Time, SceneError> {
-    let readings =
-        [("second-order", StepEight::SecondOrder), ("as-printed", StepEight::AsPrinted)];
+fn time(check: &Check, file: &FileTime) -> Result<Time, Box<SceneError>> {
+    let readings = [("second-order", StepEight::SecondOrder), ("as-printed", StepEight::AsPrinted)];
     let reading = match &file.reading {
         None => StepEight::default(),
         Some(text) => check.choose("time.reading", text.get_ref(), text.span(), &readings)?,
@@ -323,12 +190,14 @@ fn axis_of(
     key: String,
     span: Range<usize>,
     axis: Option<usize>,
-) -> Result<usize, SceneError> {
+) -> Result<usize, Box<SceneError>> {
     match axis {
         Some(axis) if axis < check.dimension => Ok(axis),
         _ => {
-            let problem =
-                format!("the scene has {}, and this names another", counted(check.dimension, "axis"));
+            let problem = format!(
+                "the scene has {}, and this names another",
+                counted(check.dimension, "axis")
+            );
             Err(check.source.error(&key, span, problem))
         }
     }
@@ -337,7 +206,7 @@ fn axis_of(
 fn boundary(
     check: &Check,
     file: &BTreeMap<String, Spanned<FileSide>>,
-) -> Result<Vec<[Side; 2]>, SceneError> {
+) -> Result<Vec<[Side; 2]>, Box<SceneError>> {
     let states = [("fixed", true), ("free", false)];
     let free = Side { fixed: vec![false; check.dimension] };
     let mut boundary = vec![[free.clone(), free]; check.dimension];
@@ -372,7 +241,7 @@ fn grid(
     check: &Check,
     file: &FileGrid,
     boundary: &[[Side; 2]],
-) -> Result<GridSpec, SceneError> {
+) -> Result<GridSpec, Box<SceneError>> {
     let cells = check.axes("grid.cells", &file.cells, |_, n| n >= 1)?;
     let per_cell = check
         .axes("grid.particles_per_cell", &file.particles_per_cell, |_, n| (1..=64).contains(&n))?;
@@ -396,7 +265,11 @@ fn grid(
     })
 }
 
-fn regions(check: &Check, file: &[FileRegion], body: &Body) -> Result<Vec<Region>, SceneError> {
+fn regions(
+    check: &Check,
+    file: &[FileRegion],
+    body: &Body,
+) -> Result<Vec<Region>, Box<SceneError>> {
     let mut regions: Vec<Region> = Vec::new();
     for (n, entry) in file.iter().enumerate() {
         let key = |name: &str| format!("initial_velocity[{n}].{name}");
@@ -413,7 +286,8 @@ fn regions(check: &Check, file: &[FileRegion], body: &Body) -> Result<Vec<Region
                 .collect(),
         };
         let overlaps = |other: &Region| {
-            (0..check.dimension).all(|d| region.from[d] < other.to[d] && other.from[d] < region.to[d])
+            (0..check.dimension)
+                .all(|d| region.from[d] < other.to[d] && other.from[d] < region.to[d])
         };
         if let Some(other) = regions.iter().position(overlaps) {
             let problem = format!("this region overlaps initial_velocity[{other}]");
@@ -424,7 +298,7 @@ fn regions(check: &Check, file: &[FileRegion], body: &Body) -> Result<Vec<Region
     Ok(regions)
 }
 
-fn probes(check: &Check, file: &[FileProbe], body: &Body) -> Result<Vec<Probe>, SceneError> {
+fn probes(check: &Check, file: &[FileProbe], body: &Body) -> Result<Vec<Probe>, Box<SceneError>> {
     let mut probes: Vec<Probe> = Vec::new();
     for (n, entry) in file.iter().enumerate() {
         let key = |name: &str| format!("probe[{n}].{name}");
@@ -452,7 +326,7 @@ fn quantity(
     check: &Check,
     entry: &FileProbe,
     key: &dyn Fn(&str) -> String,
-) -> Result<Quantity, SceneError> {
+) -> Result<Quantity, Box<SceneError>> {
     let kinds = [
         ("velocity", Quantity::Velocity(0)),
         ("stress", Quantity::Stress(0, 0)),
@@ -490,7 +364,7 @@ fn affordable(
     scene: &Scene,
     grid: &FileGrid,
     time: &FileTime,
-) -> Result<(), SceneError> {
+) -> Result<(), Box<SceneError>> {
     let (particles, nodes, steps) = scene.sizes();
     let d = scene.dimension() as f64;
     let particle_bytes = 8.0 * (2.0 + 3.0 * d + 2.0 * d * d);
@@ -507,7 +381,10 @@ fn affordable(
         return Err(error);
     }
     if rows * row_bytes > MEMORY {
-        let problem = format!("the history of {steps:e} steps needs {:e} GB of memory", rows * row_bytes / 1e9);
+        let problem = format!(
+            "the history of {steps:e} steps needs {:e} GB of memory",
+            rows * row_bytes / 1e9
+        );
         let mut error = check.source.error("time.end", time.end.span(), problem);
         error.allowed = format!("a history of at most {limit:.1} GB; see also output.every");
         return Err(error);

@@ -47,15 +47,17 @@ impl Source {
     }
 
     /// The error `problem` with the value of `key` at `span`.
-    pub fn error(&self, key: &str, span: Range<usize>, problem: impl Into<String>) -> SceneError {
-        let piece = self
-            .pieces
-            .iter()
-            .rfind(|piece| piece.start <= span.start)
-            .unwrap_or(&self.pieces[0]);
+    pub fn error(
+        &self,
+        key: &str,
+        span: Range<usize>,
+        problem: impl Into<String>,
+    ) -> Box<SceneError> {
+        let piece =
+            self.pieces.iter().rfind(|piece| piece.start <= span.start).unwrap_or(&self.pieces[0]);
         let end = piece.text.len();
         let local = |at: usize| at.saturating_sub(piece.start).min(end);
-        SceneError {
+        Box::new(SceneError {
             path: piece.path.clone(),
             text: piece.text.clone(),
             span: local(span.start)..local(span.end),
@@ -64,11 +66,11 @@ impl Source {
             allowed: keys::find(&without_indices(key))
                 .map_or(String::new(), |key| key.allowed.to_string()),
             suggestion: None,
-        }
+        })
     }
 
     /// Reads the text as a `T`: syntax, unknown keys, missing keys, types.
-    pub fn read<T: for<'de> Deserialize<'de>>(&self) -> Result<T, SceneError> {
+    pub fn read<T: for<'de> Deserialize<'de>>(&self) -> Result<T, Box<SceneError>> {
         let mut padded = Vec::new();
         for piece in &self.pieces {
             padded.push(format!("{}{}", " ".repeat(piece.start), piece.text));
@@ -76,8 +78,11 @@ impl Source {
         let mut merged: Option<Spanned<DeTable<'_>>> = None;
         for (text, piece) in padded.iter().zip(&self.pieces) {
             let table = DeTable::parse(text).map_err(|error| {
-                let mut error =
-                    self.error("", error.span().unwrap_or(piece.start..piece.start), error.message());
+                let mut error = self.error(
+                    "",
+                    error.span().unwrap_or(piece.start..piece.start),
+                    error.message(),
+                );
                 if merged.is_some() {
                     error.allowed = "KEY=VALUE, for example grid.cells=80".to_string();
                 }
@@ -110,7 +115,7 @@ impl Source {
         target: &mut DeTable<'i>,
         patch: DeTable<'i>,
         parent: &str,
-    ) -> Result<(), SceneError> {
+    ) -> Result<(), Box<SceneError>> {
         for (name, value) in patch {
             let path = join(parent, name.get_ref());
             match target.get_mut(name.get_ref().as_ref()) {
@@ -128,7 +133,7 @@ impl Source {
         target: &mut Spanned<DeValue<'i>>,
         patch: Spanned<DeValue<'i>>,
         path: &str,
-    ) -> Result<(), SceneError> {
+    ) -> Result<(), Box<SceneError>> {
         let span = patch.span();
         match (target.get_mut(), patch.into_inner()) {
             (DeValue::Table(old), DeValue::Table(new)) => self.merge_table(old, new, path),
@@ -159,7 +164,7 @@ impl Source {
         table: &DeTable<'_>,
         parent: &str,
         span: Range<usize>,
-    ) -> Result<(), SceneError> {
+    ) -> Result<(), Box<SceneError>> {
         let bare_parent = without_indices(parent);
         for (name, value) in table {
             let path = join(parent, name.get_ref());
@@ -169,7 +174,9 @@ impl Source {
                 error.allowed = siblings().collect::<Vec<_>>().join(", ");
                 // The right name in the wrong table is worth a thought, too.
                 error.suggestion = keys::nearest(name.get_ref(), siblings()).or_else(|| {
-                    KEYS.iter().find(|key| last(key.path) == name.get_ref()).map(|key| key.path.to_string())
+                    KEYS.iter()
+                        .find(|key| last(key.path) == name.get_ref())
+                        .map(|key| key.path.to_string())
                 });
                 return Err(error);
             }

@@ -3,8 +3,8 @@
 pub mod newmark;
 pub mod steps;
 
-use crate::cost::Cost;
 use crate::continuum::state::State;
+use crate::cost::Cost;
 use crate::fault::{Breakdown, Moment};
 use crate::model::Model;
 use crate::reading::StepEight;
@@ -16,27 +16,37 @@ pub enum Integrator {
     Newmark(StepEight),
 }
 
-/// Nodal values at k = 0, which the first predictor needs.
+/// Nodal values at k = 0: one time step with Δt = 0, in which nothing moves.
 pub fn start<const D: usize>(
     state: &mut State<D>,
     model: &Model<D>,
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
-    match model.integrator {
-        Integrator::Newmark(reading) => newmark::start(state, model, reading, cost),
-    }
+    step(state, model, 0.0, Moment::START, cost)
 }
 
 /// One time step, from k to `moment`.
+///
+/// Errors: [`Breakdown`] with particle, step and time.
 pub fn advance<const D: usize>(
     state: &mut State<D>,
     model: &Model<D>,
     moment: Moment,
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
-    match model.integrator {
-        Integrator::Newmark(reading) => newmark::advance(state, model, reading, moment, cost),
-    }?;
     cost.steps += 1;
+    step(state, model, model.dt, moment, cost)
+}
+
+fn step<const D: usize>(
+    state: &mut State<D>,
+    model: &Model<D>,
+    dt: f64,
+    moment: Moment,
+    cost: &mut Cost,
+) -> Result<(), Breakdown> {
+    match model.integrator {
+        Integrator::Newmark(reading) => newmark::step(state, model, reading, dt, moment, cost),
+    }?;
     steps::finite(&state.particle, moment)
 }

@@ -44,9 +44,11 @@ pub fn discard<const D: usize>(node: &mut Nodes<D>) {
 }
 // ANCHOR_END: discard
 
-/// N_Ip and ∇N_Ip at the particles' new positions.
+// ANCHOR: tabulate_step
+/// Between steps 2 and 3: N_Ip and ∇N_Ip at the particles' new positions.
 ///
-/// Errors: [`Breakdown::LeftGrid`].
+/// Errors: [`Breakdown::LeftGrid`], or [`Breakdown::NotFinite`] for a position
+/// that is not a number.
 pub fn tabulate<const D: usize>(
     shape: &mut Shape<D>,
     particle: &Particles<D>,
@@ -54,14 +56,17 @@ pub fn tabulate<const D: usize>(
     moment: Moment,
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
-    basis::tabulate(shape, cost, &model.basis, &model.grid, &particle.x).map_err(
-        |Outside { particle: p }| Breakdown::LeftGrid {
-            particle: p,
-            moment,
-            position: particle.x[p].iter().copied().collect(),
-        },
-    )
+    let outcome = basis::tabulate(shape, cost, &model.basis, &model.grid, &particle.x);
+    outcome.map_err(|Outside { particle: p }| {
+        let position: Vec<f64> = particle.x[p].iter().copied().collect();
+        if position.iter().all(|x| x.is_finite()) {
+            Breakdown::LeftGrid { particle: p, moment, position }
+        } else {
+            Breakdown::NotFinite { particle: p, moment, symbol: "position" }
+        }
+    })
 }
+// ANCHOR_END: tabulate_step
 
 // ANCHOR: transfer
 /// Step 3: m_I = Σ_p m_p N_Ip  [kg] and p_I = Σ_p m_p v_p N_Ip  [kg m/s].
@@ -109,13 +114,12 @@ pub fn update_density<const D: usize>(
     moment: Moment,
 ) -> Result<(), Breakdown> {
     for p in 0..particle.len() {
-        particle.rho[p] = law::density(particle.rho[p], &particle.d_eps[p]).ok_or(
-            Breakdown::Inverted {
+        particle.rho[p] =
+            law::density(particle.rho[p], &particle.d_eps[p]).ok_or(Breakdown::Inverted {
                 particle: p,
                 moment,
                 strain: particle.d_eps[p].trace(),
-            },
-        )?;
+            })?;
     }
     Ok(())
 }
@@ -176,10 +180,7 @@ pub fn correct<const D: usize>(
 /// Stops a run in the step in which a particle stops being finite.
 ///
 /// Errors: [`Breakdown::NotFinite`] with the first such particle.
-pub fn finite<const D: usize>(
-    particle: &Particles<D>,
-    moment: Moment,
-) -> Result<(), Breakdown> {
+pub fn finite<const D: usize>(particle: &Particles<D>, moment: Moment) -> Result<(), Breakdown> {
     for p in 0..particle.len() {
         let symbol = if !particle.x[p].iter().all(|x| x.is_finite()) {
             "position"
@@ -190,11 +191,7 @@ pub fn finite<const D: usize>(
         } else {
             continue;
         };
-        return Err(Breakdown::NotFinite {
-            particle: p,
-            moment,
-            symbol,
-        });
+        return Err(Breakdown::NotFinite { particle: p, moment, symbol });
     }
     Ok(())
 }

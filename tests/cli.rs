@@ -1,0 +1,394 @@
+//! The program as a user meets it: every command, and every error by name.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+const DYKA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/dyka.toml");
+const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/free-flight.toml");
+
+/// An empty directory of this test's own.
+fn directory(name: &str) -> PathBuf {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::remove_dir_all(&dir).ok();
+    fs::create_dir_all(&dir).unwrap();
+    dir
+}
+
+fn program(dir: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lme-mpm")).args(arguments).current_dir(dir).output().unwrap()
+}
+
+fn program_with_input(dir: &Path, arguments: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lme-mpm"))
+        .args(arguments)
+        .current_dir(dir)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+fn files(dir: &Path) -> Vec<String> {
+    let entry = |entry: std::io::Result<fs::DirEntry>| {
+        entry.unwrap().file_name().to_string_lossy().into_owned()
+    };
+    let mut names: Vec<String> = fs::read_dir(dir).unwrap().map(entry).collect();
+    names.sort();
+    names
+}
+
+/// Fails with `code`, and says each of `words` on stderr.
+fn assert_fails(output: &Output, code: i32, words: &[&str]) {
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    for word in words {
+        assert!(stderr.contains(word), "`{word}` is not in:\n{stderr}");
+    }
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    assert!(!stderr.contains('\u{1b}'), "colours without a terminal:\n{stderr}");
+}
+
+// ---- what works ------------------------------------------------------------------
+
+/// Alone, it runs the built-in bar from any directory.
+#[test]
+fn alone_runs_the_bar() {
+    let dir = directory("alone");
+    let output = program(&dir, &[]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let stdout = text(&output.stdout);
+    for word in ["The Dyka and Ingel bar", "velocity end rms", "exponentials", "out/dyka"] {
+        assert!(stdout.contains(word), "{stdout}");
+    }
+    let expected = [
+        "cost.csv",
+        "history.csv",
+        "particles.csv",
+        "stress_three_quarter.svg",
+        "summary.csv",
+        "velocity_end.svg",
+    ];
+    assert_eq!(files(&dir.join("out/dyka")), expected);
+}
+
+/// The files of a run hold what they promise.
+#[test]
+fn run_writes_complete_files() {
+    let dir = directory("run");
+    let output = program(&dir, &["run", DYKA, "--out", "here", "--quiet"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(output.stdout.is_empty() && output.stderr.is_empty(), "--quiet is quiet");
+    let read = |name: &str| fs::read_to_string(dir.join("here").join(name)).unwrap();
+    let history = read("history.csv");
+    assert!(history.starts_with(
+        "step,t,kinetic_energy,strain_energy,momentum,velocity_end,velocity_end_exact,\
+         stress_three_quarter,stress_three_quarter_exact\n0,0,"
+    ));
+    assert_eq!(history.lines().count(), 1 + 321);
+    assert_eq!(read("particles.csv").lines().count(), 1 + 80);
+    assert!(read("summary.csv").starts_with("quantity,value,unit\nvelocity_end_rms,0.82"));
+    assert!(read("cost.csv").contains("particle_node_pairs,51360,1\n"));
+    assert!(read("cost.csv").contains("bytes_per_particle,48,B\n"));
+    let svg = read("velocity_end.svg");
+    for word in ["<svg", "time t [µs]", "velocity at x = 0.1333 m [m/s]", "exact", "computed"] {
+        assert!(svg.contains(word), "`{word}` is not in the picture");
+    }
+    assert!(!history.contains("NaN") && !history.contains("inf"));
+}
+
+/// `--set` replaces, adds, reaches into lists and takes bare words.
+#[test]
+fn run_set_changes_the_scene() {
+    let dir = directory("set");
+    let sets = [
+        "run",
+        DYKA,
+        "--out",
+        "here",
+        "--set",
+        "grid.cells=20",
+        "--set",
+        "output.every=10",
+        "--set",
+        "time.reading=as-printed",
+        "--set",
+        "probe.0.name=tip",
+        "--set",
+        "title=Short",
+    ];
+    let output = program(&dir, &sets);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("Short"));
+    let history = fs::read_to_string(dir.join("here/history.csv")).unwrap();
+    assert_eq!(history.lines().count(), 1 + 17);
+    assert!(history.contains(",tip,tip_exact,"));
+}
+
+/// The free flight is free of stress, and its displacement exact to round-off.
+#[test]
+fn run_free_flight() {
+    let dir = directory("flight");
+    let output = program(&dir, &["run", FLIGHT]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let summary = fs::read_to_string(dir.join("out/free-flight/summary.csv")).unwrap();
+    assert!(summary.contains("stress_middle_peak,0,Pa\n"), "{summary}");
+    assert!(summary.contains("velocity_middle_rms,0,m/s\n"), "{summary}");
+}
+
+/// Two runs give the same bytes, but for the wall time.
+#[test]
+fn run_is_repeatable() {
+    let dir = directory("repeat");
+    for out in ["one", "two"] {
+        assert!(program(&dir, &["run", DYKA, "--out", out, "--quiet"]).status.success());
+    }
+    for name in files(&dir.join("one")) {
+        let read = |out: &str| fs::read_to_string(dir.join(out).join(&name)).unwrap();
+        let without_wall_time = |text: String| {
+            text.lines()
+                .filter(|line| !line.starts_with("wall_time"))
+                .map(String::from)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(without_wall_time(read("one")), without_wall_time(read("two")), "{name}");
+    }
+}
+
+/// `exact` answers points in order, with shortest round-trip numbers.
+#[test]
+fn exact_from_standard_input_and_from_a_file() {
+    let dir = directory("exact");
+    let points = "x,t\n0.1333,1e-6\n0,2e-5\n0.05,0\n";
+    let piped = program_with_input(&dir, &["exact", DYKA, "--points", "-"], points);
+    assert!(piped.status.success(), "{}", text(&piped.stderr));
+    let answer = text(&piped.stdout);
+    let lines: Vec<&str> = answer.lines().collect();
+    assert_eq!(lines[0], "x,t,velocity,stress,displacement");
+    assert!(lines[1].starts_with("0.1333,1e-6,5,0,"), "{answer}");
+    assert_eq!(lines[2], "0,0.00002,0,197901490.64623034,0".replace("0.00002", "2e-5"));
+    assert_eq!(lines[3], "0.05,0,0,0,0");
+    fs::write(dir.join("points.csv"), points).unwrap();
+    let file = program(&dir, &["exact", DYKA, "--points", "points.csv"]);
+    assert_eq!(text(&file.stdout), answer);
+}
+
+/// Every `--help` shows an example.
+#[test]
+fn help_shows_examples() {
+    let dir = directory("help");
+    for arguments in [&["--help"][..], &["run", "--help"], &["exact", "--help"]] {
+        let output = program(&dir, arguments);
+        assert!(output.status.success());
+        let stdout = text(&output.stdout);
+        assert!(stdout.contains("Example:\n  "), "{stdout}");
+    }
+}
+
+// ---- what fails, by name -----------------------------------------------------------
+
+/// A bad scene: the bar with `from` replaced by `to`; the error names the
+/// file, the line, and `words`; nothing is written.
+fn assert_bad_scene(name: &str, from: &str, to: &str, words: &[&str]) {
+    let dir = directory(&format!("bad-{name}"));
+    let good = fs::read_to_string(DYKA).unwrap();
+    assert!(good.contains(from), "`{from}` is not in the scene");
+    let bad = good.replacen(from, to, 1);
+    fs::write(dir.join("bad.toml"), &bad).unwrap();
+    let output = program(&dir, &["run", "bad.toml", "--out", "out"]);
+    assert_fails(&output, 2, words);
+    assert_eq!(files(&dir), ["bad.toml"], "nothing may be written");
+}
+
+#[test]
+fn bad_unknown_key() {
+    let words =
+        ["bad.toml:10:1", "body.densty", "not known", "youngs_modulus", "did you mean `density`?"];
+    assert_bad_scene("key", "density = 7833", "densty = 7833", &words);
+}
+
+#[test]
+fn bad_unknown_table() {
+    let words = ["[bodi]", "did you mean `body`?"];
+    assert_bad_scene("table", "[body]", "[bodi]", &words);
+}
+
+#[test]
+fn bad_missing_key() {
+    let words = ["bad.toml:14:1", "grid.cells", "missing", "whole number"];
+    assert_bad_scene("missing", "cells = 40\n", "", &words);
+}
+
+#[test]
+fn bad_type() {
+    let words = ["bad.toml:10:11", "body.density", "string", "expected a number", "kg/m³"];
+    assert_bad_scene("type", "density = 7833", "density = \"heavy\"", &words);
+    let words = ["grid.cells", "floating point", "whole number from 1 up"];
+    assert_bad_scene("float", "cells = 40", "cells = 40.5", &words);
+}
+
+#[test]
+fn bad_syntax() {
+    assert_bad_scene("syntax", "density = 7833", "density = = 7833", &["bad.toml:10:11"]);
+    assert_bad_scene("empty", &fs::read_to_string(DYKA).unwrap(), "", &["title", "missing"]);
+}
+
+#[test]
+fn bad_ranges() {
+    let cases = [
+        ("cells", "cells = 40", "cells = 0", &["grid.cells", "from 1 up"]),
+        ("cells-negative", "cells = 40", "cells = -4", &["grid.cells", "from 1 up"]),
+        ("density", "density = 7833", "density = -1", &["body.density", "above 0"]),
+        ("nu", "poisson_ratio = 0", "poisson_ratio = 0.5", &["poisson_ratio", "< 0.5"]),
+        ("nu-low", "poisson_ratio = 0", "poisson_ratio = -1", &["poisson_ratio", "−1 <"]),
+        ("nan", "density = 7833", "density = nan", &["body.density", "above 0"]),
+        ("infinity", "length = 0.1333", "length = inf", &["body.length", "above 0"]),
+        ("cfl", "cfl = 0.5", "cfl = 0", &["time.cfl", "above 0"]),
+        ("end", "end = 1.0", "end = -1.0", &["time.end", "above 0"]),
+        ("every", "every = 1", "every = 0", &["output.every", "from 1 up"]),
+        ("beyond", "right = 1", "right = -1", &["grid.beyond.right", "from 0 up"]),
+        ("probe", "position = 0.1333", "position = 0.2", &["probe[0].position", "of the body"]),
+        ("region", "to = 0.1333", "to = 0.2", &["initial_velocity[0].to", "inside the body"]),
+        ("axes", "length = 0.1333", "length = [1, 1, 1, 1]", &["body.length", "1 to 3"]),
+        ("lists", "cells = 40", "cells = [40, 4]", &["grid.cells", "1 axis"]),
+        ("memory", "cells = 40", "cells = 1000000000", &["grid.cells", "GB of memory"]),
+        ("history", "cfl = 0.5", "cfl = 1e-12", &["time.end", "GB of memory"]),
+        ("name", "\"velocity_end\"", "\"a/b\"", &["probe[0].name", "a/b"]),
+        ("twice", "\"velocity_end\"", "\"stress_three_quarter\"", &["probe[1].name", "twice"]),
+        ("side", "left = \"fixed\"", "top = \"fixed\"", &["boundary.top", "1 axis"]),
+    ];
+    for (name, from, to, words) in cases {
+        assert_bad_scene(name, from, to, words);
+    }
+}
+
+#[test]
+fn bad_choices() {
+    let cases = [
+        ("method", "\"mpm\"", "\"mmp\"", &["method", "allowed: \"mpm\"", "did you mean `mpm`?"]),
+        ("mass", "\"lumped\"", "\"lump\"", &["mass", "allowed: \"lumped\"", "mean `lumped`?"]),
+        ("basis", "\"linear\"", "\"liner\"", &["basis.kind", "\"linear\"", "mean `linear`?"]),
+        ("scheme", "\"newmark\"", "\"newmarc\"", &["time.integrator", "newmark", "did you mean"]),
+        ("reading", "\"second-order\"", "\"second\"", &["time.reading", "as-printed", "did you"]),
+        ("fixed", "\"fixed\"", "\"fix\"", &["boundary.left", "\"free\"", "mean `fixed`?"]),
+        ("probed", "\"velocity\"", "\"speed\"", &["probe[0].quantity", "\"stress\"", "allowed"]),
+    ];
+    for (name, from, to, words) in cases {
+        assert_bad_scene(name, from, to, words);
+    }
+}
+
+#[test]
+fn bad_overlapping_regions() {
+    let more = "velocity = 5\n\n[[initial_velocity]]\nfrom = 0\nto = 0.1\nvelocity = 1\n";
+    assert_bad_scene("overlap", "velocity = 5\n", more, &["initial_velocity[1].from", "overlaps"]);
+}
+
+/// Errors in `--set` point at the argument.
+#[test]
+fn bad_set() {
+    let dir = directory("bad-set");
+    let cases = [
+        ("grid.cell=4", &["--set grid.cell=4", "did you mean `cells`?"]),
+        ("grid.cells=0", &["--set grid.cells=0", "from 1 up"]),
+        ("grid.cells", &["--set grid.cells", "KEY=VALUE"]),
+        ("probe.7.position=0", &["--set probe.7.position=0", "a number from 0 to 1"]),
+    ];
+    for (set, words) in cases {
+        assert_fails(&program(&dir, &["run", DYKA, "--set", set, "--out", "out"]), 2, words);
+    }
+    assert!(files(&dir).is_empty());
+}
+
+#[test]
+fn bad_files() {
+    let dir = directory("bad-files");
+    let output = program(&dir, &["run", "nowhere.toml"]);
+    assert_fails(&output, 2, &["cannot read nowhere.toml", "No such file"]);
+    fs::write(dir.join("taken"), "a file, not a directory").unwrap();
+    let output = program(&dir, &["run", DYKA, "--out", "taken/deeper"]);
+    assert_fails(&output, 2, &["cannot write taken/deeper"]);
+    fs::write(dir.join("binary.toml"), [0xff, 0xfe, 0x00]).unwrap();
+    assert_fails(&program(&dir, &["run", "binary.toml"]), 2, &["cannot read binary.toml"]);
+    assert_fails(&program(&dir, &["runn"]), 2, &["runn", "run"]);
+}
+
+#[test]
+fn bad_points() {
+    let dir = directory("bad-points");
+    let cases = [
+        ("x,time\n0,0\n", &["-, line 1", "columns x and t"][..]),
+        ("x,t\n0,0\n0,abc\n", &["-, line 3", "`abc` is not a value of t"]),
+        ("x,t\n0.2,0\n", &["-, line 2", "from 0 to 0.1333"]),
+        ("x,t\n0,-1\n", &["-, line 2", "`-1` is not a value of t"]),
+        ("x,t\n0,NaN\n", &["-, line 2", "NaN"]),
+        ("x,t\n0,0,0\n", &["-, line 2", "two numbers"]),
+        ("", &["-, line 1", "columns x and t"]),
+    ];
+    for (points, words) in cases {
+        let output = program_with_input(&dir, &["exact", DYKA, "--points", "-"], points);
+        assert_fails(&output, 2, words);
+        assert!(output.stdout.is_empty(), "no half answer");
+    }
+    let output = program(&dir, &["exact", DYKA, "--points", "nowhere.csv"]);
+    assert_fails(&output, 2, &["cannot read nowhere.csv"]);
+}
+
+#[test]
+fn bad_scene_without_exact_solution() {
+    let dir = directory("bad-exact");
+    let scene = "title='b'\nmethod='mpm'\nmass='lumped'\nbasis.kind='linear'\n\
+        body={length=[1,1],density=1,youngs_modulus=1,poisson_ratio=0}\n\
+        grid={cells=[2,2],particles_per_cell=[1,1]}\n\
+        time={integrator='newmark',cfl=0.5,end=1}\n";
+    fs::write(dir.join("block.toml"), scene).unwrap();
+    let output = program_with_input(&dir, &["exact", "block.toml", "--points", "-"], "x,t\n");
+    assert_fails(&output, 2, &["no exact solution", "more than one dimension"]);
+    // It runs all the same, and says nothing of an exact solution.
+    let output = program(&dir, &["run", "block.toml"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(!text(&output.stdout).contains("exact"));
+}
+
+/// A Δt above the limit: step, time and particle, exit code 1, and the history
+/// up to there under a name that says so, instead of an earlier run's files.
+#[test]
+fn breakdown_blows_up() {
+    let dir = directory("blow-up");
+    assert!(program(&dir, &["run", DYKA, "--out", "o", "--quiet"]).status.success());
+    let output = program(&dir, &["run", DYKA, "--out", "o", "--set", "time.cfl=1.9"]);
+    let words = ["blew up at step ", "t = ", "particle ", "Courant number", "smaller time.cfl"];
+    assert_fails(&output, 1, &words);
+    assert_eq!(files(&dir.join("o")), ["history.failed.csv"]);
+    let history = fs::read_to_string(dir.join("o/history.failed.csv")).unwrap();
+    assert!(history.starts_with("step,t,") && history.lines().count() > 2);
+    assert!(!history.contains("NaN") && !history.contains("inf"));
+    // A good run takes the place of the failed one.
+    assert!(program(&dir, &["run", DYKA, "--out", "o", "--quiet"]).status.success());
+    assert!(!dir.join("o/history.failed.csv").exists());
+}
+
+/// Recorded seldom, the blow-up is still caught, by the particle.
+#[test]
+fn breakdown_between_records() {
+    let dir = directory("blow-up-between");
+    let sets = ["--set", "time.cfl=1.9", "--set", "output.every=1000000"];
+    let output = program(&dir, &[&["run", DYKA, "--out", "o"][..], &sets].concat());
+    assert_fails(&output, 1, &["particle ", "at step ", "t = ", "Courant number"]);
+}
+
+#[test]
+fn breakdown_leaves_the_grid() {
+    let dir = directory("leaves");
+    let output = program(&dir, &["run", FLIGHT, "--out", "o", "--set", "time.end=0.5"]);
+    let words = ["particle 19 left the grid at step ", "t = ", "grid.beyond", "history.failed.csv"];
+    assert_fails(&output, 1, &words);
+}
