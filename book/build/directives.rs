@@ -1,0 +1,199 @@
+//! Directives: what a chapter may ask for instead of typing it.
+//!
+//! | directive | gives |
+//! |---|---|
+//! | `{{#code FILE:ANCHOR}}` | anchored lines of the source |
+//! | `{{#side}}` … `{{#beside}}` … `{{#end}}` | prose beside code |
+//! | `{{#pin SNAPSHOT}}` | an approved text |
+//! | `{{#table FILE}}` | a CSV file, or a snapshot that holds CSV, as a table |
+//! | `{{#value FILE KEY [percent]}}` | one approved number, in a sentence |
+//! | `{{#figure SNAPSHOT | CAPTION}}` | an approved picture |
+//! | `{{#equations}}`, `{{#symbols}}` | the two indexes |
+
+use crate::index;
+use crate::listing::{Definitions, escape, page_of};
+use crate::{maths, read};
+use anyhow::{Context, Result, anyhow, bail};
+use mdbook_preprocessor::book::{Book, BookItem, Chapter};
+use mdbook_preprocessor::{Preprocessor, PreprocessorContext};
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::rc::Rc;
+
+pub struct Directives {
+    definitions: Definitions,
+    figures: Rc<RefCell<BTreeSet<String>>>,
+}
+
+impl Directives {
+    pub fn new() -> Result<Self> {
+        Ok(Directives { definitions: Definitions::collect()?, figures: Rc::default() })
+    }
+
+    /// The pictures that chapters asked for, filled in by the build.
+    pub fn figures(&self) -> Rc<RefCell<BTreeSet<String>>> {
+        self.figures.clone()
+    }
+
+    fn chapter(&self, chapter: &Chapter) -> Result<String> {
+        let Some(path) = &chapter.path else { return Ok(chapter.content.clone()) };
+        let to_root = "../".repeat(path.components().count() - 1);
+        let name = path.display().to_string();
+        let mut text = String::new();
+        let mut rest = chapter.content.as_str();
+        while let Some((before, after)) = rest.split_once("{{#") {
+            let (directive, after) = after
+                .split_once("}}")
+                .with_context(|| format!("{name}: a directive without its end"))?;
+            text.push_str(before);
+            let expanded = self
+                .expand(directive, &to_root)
+                .with_context(|| format!("{name}: {{{{#{directive}}}}}"))?;
+            text.push_str(&expanded);
+            rest = after;
+        }
+        text.push_str(rest);
+        maths::render(&name, &text)
+    }
+
+    fn expand(&self, directive: &str, to_root: &str) -> Result<String> {
+        let (word, argument) = directive.split_once(' ').unwrap_or((directive, ""));
+        let argument = argument.trim();
+        match word {
+            "code" => {
+                let (file, anchor) = argument.split_once(':').context("wants FILE:ANCHOR")?;
+                self.definitions.listing(file, anchor, to_root)
+            }
+            "side" => Ok("<div class=\"side\"><div class=\"prose\">\n".into()),
+            "beside" => Ok("</div><div class=\"beside\">\n".into()),
+            "end" => Ok("</div></div>\n".into()),
+            "pin" => Ok(format!("```text\n{}\n```", snapshot(argument)?.trim_end())),
+            "table" => table(argument),
+            "value" => value(argument),
+            "figure" => {
+                let (file, caption) = argument.split_once('|').context("wants FILE | CAPTION")?;
+                let (file, caption) = (file.trim(), caption.trim());
+                if !crate::root().join(file).is_file() {
+                    bail!("there is no file {file}");
+                }
+                self.figures.borrow_mut().insert(file.to_string());
+                let source = format!("{to_root}figures/{}", figure_name(file));
+                let alt = escape(&caption.replace(['$', '`'], ""));
+                Ok(format!(
+                    "<figure>\n<img src=\"{source}\" alt=\"{alt}\">\n<figcaption>\n\n{caption}\n\n</figcaption></figure>"
+                ))
+            }
+            "equations" => index::equations(&self.definitions, to_root),
+            "symbols" => index::symbols(),
+            _ => bail!("this directive is not known"),
+        }
+    }
+
+    /// The source as chapters of its own, so that code can be linked.
+    fn source_chapters(&self) -> Vec<BookItem> {
+        let mut top = Chapter::new(
+            "The source, file by file",
+            "# The source, file by file\n\n".to_string(),
+            "source/index.md",
+            Vec::new(),
+        );
+        for file in self.definitions.files.keys() {
+            let path = page_of(file).replace(".html", ".md");
+            let to_root = "../".repeat(path.matches('/').count());
+            let from_index = page_of(file).replacen("source/", "", 1);
+            top.content.push_str(&format!("- [`{file}`]({from_index})\n"));
+            let content = self.definitions.page(file, &to_root);
+            let parents = vec![top.name.clone()];
+            top.sub_items.push(BookItem::Chapter(Chapter::new(file, content, path, parents)));
+        }
+        vec![BookItem::Separator, BookItem::Chapter(top)]
+    }
+}
+
+impl Preprocessor for Directives {
+    fn name(&self) -> &str {
+        "lme-mpm"
+    }
+
+    fn run(&self, _: &PreprocessorContext, mut book: Book) -> Result<Book> {
+        let mut failure = None;
+        book.for_each_chapter_mut(|chapter| match self.chapter(chapter) {
+            Ok(content) => chapter.content = content,
+            Err(error) => failure = failure.take().or(Some(error)),
+        });
+        if let Some(error) = failure {
+            return Err(error);
+        }
+        for item in self.source_chapters() {
+            book.push_item(item);
+        }
+        Ok(book)
+    }
+}
+
+/// `snapshots/name.snap.svg` → `name.svg`.
+pub fn figure_name(file: &str) -> String {
+    let name = file.rsplit('/').next().unwrap_or(file);
+    name.replace(".snap.svg", ".svg")
+}
+
+/// The body of a snapshot, without its header.
+fn snapshot(file: &str) -> Result<String> {
+    let text = read(file)?;
+    let body = text.strip_prefix("---\n").and_then(|rest| rest.split_once("\n---\n"));
+    Ok(body.with_context(|| format!("{file} is not a snapshot"))?.1.to_string())
+}
+
+/// Rows of a CSV file, or of a snapshot that holds CSV.
+fn rows(file: &str) -> Result<Vec<Vec<String>>> {
+    let text = if file.ends_with(".snap") { snapshot(file)? } else { read(file)? };
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
+    let rows = reader
+        .records()
+        .map(|row| Ok(row?.iter().map(String::from).collect()))
+        .collect::<Result<Vec<Vec<String>>>>()
+        .with_context(|| format!("{file} is not CSV"))?;
+    if rows.len() < 2 {
+        bail!("{file} holds no rows");
+    }
+    Ok(rows)
+}
+
+fn table(file: &str) -> Result<String> {
+    let rows = rows(file)?;
+    let line = |row: &[String]| format!("| {} |\n", row.join(" | "));
+    let words: Vec<String> = rows[0].iter().map(|name| name.replace('_', " ")).collect();
+    let mut out = line(&words);
+    out.push_str(&line(&vec!["---".to_string(); words.len()]));
+    rows[1..].iter().for_each(|row| out.push_str(&line(row)));
+    Ok(out)
+}
+
+/// One number of a `quantity,value,unit` table, to three digits.
+fn value(argument: &str) -> Result<String> {
+    let mut words = argument.split_whitespace();
+    let (file, key) = (words.next().context("wants FILE KEY")?, words.next().context("wants KEY")?);
+    let rows = rows(file)?;
+    let row = rows.iter().find(|row| row[0] == key).with_context(|| format!("no row {key}"))?;
+    let number: f64 = row[1].parse().map_err(|_| anyhow!("`{}` is not a number", row[1]))?;
+    match words.next() {
+        Some("percent") => Ok(format!("{} %", three_digits(100.0 * number))),
+        Some("plain") => Ok(row[1].clone()),
+        None => Ok(three_digits(number)),
+        Some(other) => bail!("`{other}` is not a format"),
+    }
+}
+
+fn three_digits(x: f64) -> String {
+    let magnitude = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
+    match magnitude {
+        0..=2 => format!("{x:.*}", (2 - magnitude) as usize),
+        -3..=-1 => format!("{x:.*}", (2 - magnitude) as usize),
+        3..=5 => format!("{x:.0}"),
+        _ => {
+            let text = format!("{x:.2e}");
+            let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+            format!("${digits}\\cdot10^{{{power}}}$")
+        }
+    }
+}
