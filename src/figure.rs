@@ -1,61 +1,175 @@
-//! Pictures of a run as SVG.
+//! Pictures as SVG: histories of probes, fronts of the exact solution, errors.
 
+use crate::exact::riemann::{Bar, Family};
 use crate::history::Table;
 use crate::scene::{Probe, Scene};
 use kuva::prelude::*;
+use std::sync::Arc;
 
 /// Width and height of a picture [px].
 const SIZE: (f64, f64) = (860.0, 420.0);
 
-/// Colour-blind safe (Okabe & Ito 2008): the exact curve stands behind.
+/// Colour-blind safe (Okabe & Ito 2008); the exact curve stands behind.
 const EXACT: &str = "#999999";
-const COMPUTED: &str = "#0072b2";
+const COLOURS: [&str; 3] = ["#0072b2", "#d55e00", "#009e73"];
 
-// ANCHOR: figure
+/// One line of a picture.
+struct Curve {
+    points: Vec<(f64, f64)>,
+    colour: &'static str,
+    width: f64,
+    /// Empty: not in the legend.
+    legend: String,
+}
+
+/// What stands around the curves.
+struct Frame {
+    title: String,
+    x_label: String,
+    y_label: String,
+    log: bool,
+}
+
+fn draw(curves: Vec<Curve>, frame: Frame) -> String {
+    let last =
+        curves.iter().flat_map(|curve| &curve.points).fold(0.0, |last: f64, p| last.max(p.0));
+    let plots: Vec<Plot> = curves
+        .into_iter()
+        .map(|curve| {
+            let line = LinePlot::new()
+                .with_data(curve.points)
+                .with_color(curve.colour)
+                .with_stroke_width(curve.width);
+            Plot::from(if curve.legend.is_empty() { line } else { line.with_legend(curve.legend) })
+        })
+        .collect();
+    let layout = Layout::auto_from_plots(&plots)
+        .with_width(SIZE.0)
+        .with_height(SIZE.1)
+        .with_title(frame.title)
+        .with_x_label(frame.x_label)
+        .with_y_label(frame.y_label)
+        .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_title_size(16)
+        .with_label_size(14)
+        .with_tick_size(12)
+        .with_legend_position(LegendPosition::OutsideRightTop);
+    let layout = if frame.log { layout.with_log_scale() } else { layout.with_x_axis_max(last) };
+    render_to_svg(plots, layout)
+}
+
+// ANCHOR: probe_figure
 /// The history of one probe, computed and, where known, exact.
 pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
     let column = |name: &str| history.column(name).unwrap_or_default();
     let (t, computed) = (column("t"), column(&probe.name));
     let exact = column(&format!("{}_exact", probe.name));
-
     let (per_t, t_prefix) = prefix(largest(&t));
     let (per_y, y_prefix) = prefix(largest(&computed).max(largest(&exact)));
-    let line = |y: &[f64], color: &str, width: f64, legend: &str| {
-        let points = t.iter().zip(y).map(|(t, y)| (t * per_t, y * per_y));
-        Plot::from(
-            LinePlot::new()
-                .with_data(points.collect::<Vec<_>>())
-                .with_color(color)
-                .with_stroke_width(width)
-                .with_legend(legend),
-        )
+    let curve = |y: &[f64], colour, width, legend: &str| Curve {
+        points: t.iter().zip(y).map(|(t, y)| (t * per_t, y * per_y)).collect(),
+        colour,
+        width,
+        legend: legend.to_string(),
     };
-    let mut plots = Vec::new();
+    let mut curves = Vec::new();
     if !exact.is_empty() {
-        plots.push(line(&exact, EXACT, 4.0, "exact"));
+        curves.push(curve(&exact, EXACT, 4.0, "exact"));
     }
-    plots.push(line(&computed, COMPUTED, 1.4, "computed"));
+    curves.push(curve(&computed, COLOURS[0], 1.4, "computed"));
 
     let (name, unit) = probe.quantity.name_unit();
     let at: Vec<String> =
         probe.position.iter().zip(&scene.body.origin).map(|(x, o)| format!("{}", x + o)).collect();
     let cells: Vec<String> = scene.grid.cells.iter().map(usize::to_string).collect();
-    let layout = Layout::auto_from_plots(&plots)
-        .with_width(SIZE.0)
-        .with_height(SIZE.1)
-        .with_title(format!("{}: {}, {} cells", scene.title, probe.name, cells.join(" × ")))
-        .with_x_label(format!("time t [{t_prefix}s]"))
-        .with_y_label(format!("{name} at x = {} m [{y_prefix}{unit}]", at.join(", ")))
-        .with_x_tick_format(TickFormat::Custom(std::sync::Arc::new(tick)))
-        .with_y_tick_format(TickFormat::Custom(std::sync::Arc::new(tick)))
-        .with_x_axis_max(largest(&t) * per_t)
-        .with_title_size(16)
-        .with_label_size(14)
-        .with_tick_size(12)
-        .with_legend_position(LegendPosition::OutsideRightTop);
-    render_to_svg(plots, layout)
+    let frame = Frame {
+        title: format!("{}: {}, {} cells", scene.title, probe.name, cells.join(" × ")),
+        x_label: format!("time t [{t_prefix}s]"),
+        y_label: format!("{name} at x = {} m [{y_prefix}{unit}]", at.join(", ")),
+        log: false,
+    };
+    draw(curves, frame)
 }
-// ANCHOR_END: figure
+// ANCHOR_END: probe_figure
+
+/// A quantity of the exact bar at the material point x over `transits` L/c:
+/// the paper's Figs. 5 and 6. `value` gives the quantity at (x, t).
+pub fn exact_history(
+    title: &str,
+    y_label: &str,
+    transits: f64,
+    value: impl Fn(f64) -> f64,
+) -> String {
+    // Jumps fall on multiples of L/4c; each plateau is drawn from its middle.
+    let pieces = (transits * 4.0) as usize;
+    let mut points = Vec::new();
+    for k in 0..pieces {
+        let y = value((k as f64 + 0.5) / 4.0);
+        points.push((k as f64 / 4.0, y));
+        points.push(((k + 1) as f64 / 4.0, y));
+    }
+    let frame = Frame {
+        title: title.to_string(),
+        x_label: "time ct/L [–]".to_string(),
+        y_label: y_label.to_string(),
+        log: false,
+    };
+    draw(vec![Curve { points, colour: COLOURS[0], width: 2.0, legend: String::new() }], frame)
+}
+
+/// The x-t diagram of a bar: every front from its source, from end to end, for
+/// `transits` L/c, coloured by the invariant that carries it.
+pub fn fronts(bar: &Bar, transits: f64) -> String {
+    let mut curves: Vec<Curve> = Vec::new();
+    for source in bar.fronts(0.0) {
+        for family in [Family::I, Family::II] {
+            let (mut x, mut t, mut family) = (source / bar.length, 0.0, family);
+            while t < transits {
+                let (end, other, colour) = match family {
+                    Family::I => (1.0, Family::II, COLOURS[0]),
+                    Family::II => (0.0, Family::I, COLOURS[1]),
+                };
+                let step = f64::min((end - x).abs(), transits - t);
+                let to = x + step * (end - x).signum();
+                let first = !curves.iter().any(|curve| curve.colour == colour);
+                let legend = match family {
+                    _ if !first => String::new(),
+                    Family::I => "jump of R^I, to the right".to_string(),
+                    Family::II => "jump of R^II, to the left".to_string(),
+                };
+                let points = vec![(x, t), (to, t + step)];
+                curves.push(Curve { points, colour, width: 2.0, legend });
+                (x, t, family) = (to, t + step, other);
+            }
+        }
+    }
+    let frame = Frame {
+        title: "Fronts of the bar".to_string(),
+        x_label: "place x/L [–]".to_string(),
+        y_label: "time ct/L [–]".to_string(),
+        log: false,
+    };
+    draw(curves, frame)
+}
+
+/// Errors against the number of cells, both on logarithmic axes; each list of
+/// `(cells, error)` has its name.
+pub fn convergence(title: &str, lists: &[(&str, Vec<(f64, f64)>)]) -> String {
+    let curve = |(n, (name, points)): (usize, &(&str, Vec<(f64, f64)>))| Curve {
+        points: points.clone(),
+        colour: COLOURS[n % COLOURS.len()],
+        width: 2.0,
+        legend: name.to_string(),
+    };
+    let frame = Frame {
+        title: title.to_string(),
+        x_label: "cells [–]".to_string(),
+        y_label: "relative error [–]".to_string(),
+        log: true,
+    };
+    draw(lists.iter().enumerate().map(curve).collect(), frame)
+}
 
 fn largest(list: &[f64]) -> f64 {
     list.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))

@@ -7,9 +7,12 @@
 
 mod support;
 
+use lme_mpm::exact::Exact;
 use lme_mpm::figure;
+use lme_mpm::history::shortest;
 use lme_mpm::run::Outcome;
 use lme_mpm::scene::Scene;
+use lme_mpm::summary;
 use std::fmt::Write;
 use support::*;
 
@@ -61,6 +64,12 @@ fn settings() -> insta::Settings {
     settings
 }
 
+/// An approved picture, as `snapshots/NAME.snap.svg`.
+fn approve_picture(name: &str, svg: String) {
+    let file = format!("{name}.svg");
+    settings().bind(|| insta::assert_binary_snapshot!(&file, svg.into_bytes()));
+}
+
 fn pin_both_probes(scene: &Scene, name: &str) {
     let outcome = finished(scene);
     for probe in ["velocity_end", "stress_three_quarter"] {
@@ -79,10 +88,78 @@ fn dyka_linear_newmark_as_printed() {
     pin_both_probes(&scene, "dyka__linear__newmark_as_printed");
 }
 
-/// The picture in the README, as the program draws it.
+/// The picture in the README, and its companion, as the program draws them.
 #[test]
-fn readme_figure() {
+fn dyka_figures() {
     let scene = dyka(&[]);
-    let svg = figure::probe(&scene, &scene.probes[0], &finished(&scene).history);
-    settings().bind(|| insta::assert_binary_snapshot!("dyka__velocity_end.svg", svg.into_bytes()));
+    let history = finished(&scene).history;
+    for probe in &scene.probes {
+        let svg = figure::probe(&scene, probe, &history);
+        approve_picture(&format!("dyka__{}", probe.name), svg);
+    }
+}
+
+/// Figs. 5 and 6 of the paper, and the fronts behind them.
+#[test]
+fn exact_figures() {
+    let Exact::Bar(bar) = Exact::of(&dyka(&[])).unwrap();
+    let (length, time) = (bar.length, bar.length / bar.c());
+    let velocity = |tau: f64| bar.at(length, tau * time).velocity;
+    let title = "Exact velocity at the free end of the Dyka and Ingel bar";
+    let svg = figure::exact_history(title, "velocity v [m/s]", 8.0, velocity);
+    approve_picture("exact__velocity_end", svg);
+    let stress = |tau: f64| bar.at(0.75 * length, tau * time).stress * 1e-6;
+    let title = "Exact stress at 3L/4 of the Dyka and Ingel bar";
+    let svg = figure::exact_history(title, "stress σ [MPa]", 8.0, stress);
+    approve_picture("exact__stress_three_quarter", svg);
+    approve_picture("exact__fronts", figure::fronts(&bar, 4.0));
+}
+
+/// All figures of the bar's summary that do not depend on the machine.
+#[test]
+fn dyka_summary() {
+    let scene = dyka(&[]);
+    let outcome = finished(&scene);
+    let mut lines = summary::lines(&scene, &outcome, 0.0);
+    lines.retain(|line| line.quantity != "wall_time");
+    lines.extend(summary::cost_lines(&outcome.cost));
+    let mut text = String::from("quantity,value,unit\n");
+    for line in lines {
+        writeln!(text, "{},{},{}", line.quantity, shortest(line.value), line.unit).unwrap();
+    }
+    approve("dyka__summary", &text);
+}
+
+/// Errors of the bar against the number of cells: table, picture, slopes.
+#[test]
+fn dyka_convergence() {
+    let names = ["velocity_end", "stress_three_quarter", "displacement_field"];
+    let labels = ["velocity at L", "stress at 3L/4", "displacement field"];
+    let cells = [40.0, 80.0, 160.0, 320.0, 640.0];
+    let mut lists: Vec<(&str, Vec<(f64, f64)>)> =
+        labels.iter().map(|label| (*label, Vec::new())).collect();
+    let mut text = String::from(
+        "cells,velocity at L,stress at 3L/4,displacement field,largest energy drift\n",
+    );
+    for n in cells {
+        let scene = dyka(&[&format!("grid.cells={n}")]);
+        let lines = summary::lines(&scene, &finished(&scene), 0.0);
+        let value = |name: &str| lines.iter().find(|line| line.quantity == name).unwrap().value;
+        write!(text, "{n}").unwrap();
+        for (list, name) in lists.iter_mut().zip(names) {
+            let error = value(&format!("{name}_rms_relative"));
+            list.1.push((n, error));
+            write!(text, ",{error:.5}").unwrap();
+        }
+        writeln!(text, ",{:.5}", value("energy_drift_largest")).unwrap();
+    }
+    approve("dyka__errors", &text);
+    approve_picture("dyka__convergence", figure::convergence("Errors of the bar", &lists));
+    let h: Vec<f64> = cells.iter().map(|n| 1.0 / n).collect();
+    let mut text = String::from("quantity,value,unit\n");
+    for ((_, list), name) in lists.iter().zip(names) {
+        let errors: Vec<f64> = list.iter().map(|point| point.1).collect();
+        writeln!(text, "{name}_order,{:.4},1", slope(&h, &errors)).unwrap();
+    }
+    approve("dyka__orders", &text);
 }

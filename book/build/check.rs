@@ -111,7 +111,10 @@ fn visible_text(document: &Html) -> String {
             });
             // Code may hold anything that its language allows.
             let inside_code = node.ancestors().any(|above| {
-                above.value().as_element().is_some_and(|element| ["pre", "code"].contains(&element.name()))
+                above
+                    .value()
+                    .as_element()
+                    .is_some_and(|element| ["pre", "code"].contains(&element.name()))
             });
             if !inside_hidden && !inside_code {
                 out.push_str(text);
@@ -122,12 +125,7 @@ fn visible_text(document: &Html) -> String {
     out
 }
 
-fn broken(
-    html: &Path,
-    pages: &BTreeMap<String, Page>,
-    name: &str,
-    link: &str,
-) -> Option<String> {
+fn broken(html: &Path, pages: &BTreeMap<String, Page>, name: &str, link: &str) -> Option<String> {
     let (path, fragment) = link.split_once('#').unwrap_or((link, ""));
     let path = path.split('?').next().unwrap_or(path);
     let target = match path {

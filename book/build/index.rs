@@ -45,8 +45,9 @@ fn linked(definitions: &Definitions, place: &str, to_root: &str) -> Result<Strin
 pub fn symbols() -> Result<String> {
     let text = read("data/symbols.csv")?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let mut out =
-        String::from("| paper | code | unit | shape | meaning | first in |\n|---|---|---|---|---|---|\n");
+    let mut out = String::from(
+        "| paper | code | unit | shape | meaning | first in |\n|---|---|---|---|---|---|\n",
+    );
     for row in reader.records() {
         let row = row?;
         let [paper, code, unit, shape, meaning, first] =

@@ -161,7 +161,7 @@ impl Definitions {
         let mut out = format!("# {file}\n\n<pre class=\"listing source\">");
         for (n, line) in html.trim_end().split('\n').enumerate() {
             let n = n + 1;
-            write!(out, "<a class=\"line\" id=\"L{n}\" href=\"#L{n}\">{n:>4}</a>  {line}\n").ok();
+            writeln!(out, "<a class=\"line\" id=\"L{n}\" href=\"#L{n}\">{n:>4}</a>  {line}").ok();
         }
         out.push_str("</pre>\n");
         out

@@ -25,7 +25,9 @@ pub fn render(chapter: &str, text: &str) -> Result<String> {
         match display {
             false => out.push_str(&html),
             true => match tag(tex)? {
-                Some(n) => out.push_str(&format!("<div class=\"equation\" id=\"eq-{n}\">{html}</div>")),
+                Some(n) => {
+                    out.push_str(&format!("<div class=\"equation\" id=\"eq-{n}\">{html}</div>"))
+                }
                 None => out.push_str(&format!("<div class=\"equation\">{html}</div>")),
             },
         }

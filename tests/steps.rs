@@ -1,0 +1,197 @@
+//! Each step of the Algorithm by itself, against numbers worked by hand.
+//!
+//! Three nodes at 0, 1, 2; node 0 is fixed. Three particles of volume 1:
+//!
+//! | p | x | m = ρ | v | σ | nodes | N |
+//! |---|---|---|---|---|---|---|
+//! | 0 | 0.25 | 2 | 1 | 8 | 0, 1 | 0.75, 0.25 |
+//! | 1 | 0.75 | 4 | 3 | 16 | 0, 1 | 0.25, 0.75 |
+//! | 2 | 1.5 | 8 | −2 | −4 | 1, 2 | 0.5, 0.5 |
+
+use approx::assert_relative_eq;
+use lme_mpm::basis::{Basis, tabulate};
+use lme_mpm::continuum::law::LinearElastic;
+use lme_mpm::continuum::shape::Shape;
+use lme_mpm::continuum::state::{Nodes, Particles};
+use lme_mpm::cost::Cost;
+use lme_mpm::fault::{Breakdown, Moment};
+use lme_mpm::grid::Grid;
+use lme_mpm::reading::StepEight;
+use lme_mpm::time::steps;
+use nalgebra::Vector1;
+
+const DT: f64 = 0.25;
+const FIXED: [(usize, usize); 1] = [(0, 0)];
+/// m_I and p_I of step 3.
+const M: [f64; 3] = [2.5, 7.5, 4.0];
+const P: [f64; 3] = [4.5, 1.5, -8.0];
+/// f_I of (14), before the boundary takes node 0.
+const F: [f64; 3] = [24.0, -28.0, 4.0];
+
+fn setup() -> (Particles<1>, Nodes<1>, Shape<1>) {
+    let x = [0.25, 0.75, 1.5].map(Vector1::new).to_vec();
+    let mut particle = Particles::at_rest(x, 1.0, 1.0);
+    particle.m = vec![2.0, 4.0, 8.0];
+    particle.rho = vec![2.0, 4.0, 8.0];
+    particle.v = [1.0, 3.0, -2.0].map(Vector1::new).to_vec();
+    particle.sigma = [8.0, 16.0, -4.0].map(Vector1::new).to_vec();
+    let mut shape = Shape::blank(3);
+    let grid = Grid::over([2.0], [2], [[0, 0]]);
+    tabulate(&mut shape, &mut Cost::default(), &Basis::Linear, &grid, &particle.x).unwrap();
+    (particle, Nodes::blank(3), shape)
+}
+
+/// Nodes after steps 3 and 7, node 0 fixed.
+fn with_nodal_values(node: &mut Nodes<1>) {
+    node.m = M.to_vec();
+    node.p = [0.0, P[1], P[2]].map(Vector1::new).to_vec();
+    node.f = [0.0, F[1], F[2]].map(Vector1::new).to_vec();
+}
+
+fn scalars(list: &[Vector1<f64>]) -> Vec<f64> {
+    list.iter().map(|x| x[0]).collect()
+}
+
+/// (27) (28): p_I/m_I = 0, 0.2, −2 and f_I/m_I = 0, −56/15, 1 reach the particles
+/// through N.
+#[test]
+fn step_1_predict() {
+    let (mut particle, mut node, shape) = setup();
+    with_nodal_values(&mut node);
+    steps::predict(&mut particle, &node, &shape, DT);
+    let a_1 = -56.0 / 15.0;
+    let a = [0.25 * a_1, 0.75 * a_1, 0.5 * a_1 + 0.5];
+    let v = [0.25 * 0.2, 0.75 * 0.2, 0.5 * 0.2 - 1.0];
+    let (x, start) = ([0.25, 0.75, 1.5], [1.0, 3.0, -2.0]);
+    for p in 0..3 {
+        let expected = x[p] + DT * v[p] + 0.5 * DT * DT * a[p];
+        assert_relative_eq!(particle.x[p][0], expected, max_relative = 1e-15);
+        let expected = start[p] + 0.5 * DT * a[p];
+        assert_relative_eq!(particle.v[p][0], expected, max_relative = 1e-15);
+    }
+}
+
+#[test]
+fn step_2_discard() {
+    let (_, mut node, _) = setup();
+    with_nodal_values(&mut node);
+    node.v[1][0] = 7.0;
+    steps::discard(&mut node);
+    assert_eq!(node, Nodes::blank(3));
+}
+
+#[test]
+fn step_3_transfer() {
+    let (particle, mut node, shape) = setup();
+    steps::transfer(&mut node, &particle, &shape);
+    assert_eq!(node.m, M);
+    assert_eq!(scalars(&node.p), P);
+}
+
+/// The fixed node loses its momentum, and v_I = p_I/m_I; a node without mass
+/// keeps the velocity 0 and gives no NaN.
+#[test]
+fn step_4_impose_essential() {
+    let (particle, mut node, shape) = setup();
+    steps::transfer(&mut node, &particle, &shape);
+    node.m.push(0.0);
+    for list in [&mut node.p, &mut node.v, &mut node.f] {
+        list.push(Vector1::new(0.0));
+    }
+    steps::impose_essential(&mut node, &FIXED);
+    assert_eq!(scalars(&node.p), [0.0, 1.5, -8.0, 0.0]);
+    assert_eq!(scalars(&node.v), [0.0, 0.2, -2.0, 0.0]);
+}
+
+/// Δε = Δt (v_2 − v_1)/h in each cell: 0.25 · 0.2 and 0.25 · (−2.2).
+#[test]
+fn step_5_increment_strain() {
+    let (mut particle, mut node, shape) = setup();
+    node.m = M.to_vec();
+    node.v = [0.0, 0.2, -2.0].map(Vector1::new).to_vec();
+    steps::increment_strain(&mut particle, &node, &shape, DT);
+    for (d_eps, expected) in scalars(&particle.d_eps).iter().zip([0.05, 0.05, -0.55]) {
+        assert_relative_eq!(*d_eps, expected, max_relative = 1e-15);
+    }
+}
+
+#[test]
+fn step_6_update_density() {
+    let (mut particle, _, _) = setup();
+    particle.d_eps = [0.25, -0.5, 1.0].map(Vector1::new).to_vec();
+    steps::update_density(&mut particle, Moment::START).unwrap();
+    assert_eq!(particle.rho, [1.6, 8.0, 4.0]);
+    // 1 + tr Δε = 0: inside out, and named.
+    particle.d_eps[1][0] = -1.0;
+    let moment = Moment { step: 7, time: 0.5 };
+    let fault = steps::update_density(&mut particle, moment).unwrap_err();
+    assert_eq!(fault, Breakdown::Inverted { particle: 1, moment, strain: -1.0 });
+}
+
+/// (3), which the Algorithm forgets: σ += E Δε.
+#[test]
+fn step_6_update_stress() {
+    let (mut particle, _, _) = setup();
+    particle.d_eps = [0.25, -0.5, 1.0].map(Vector1::new).to_vec();
+    steps::update_stress(&mut particle, &LinearElastic::new(100.0, 0.0));
+    assert_eq!(scalars(&particle.sigma), [33.0, -34.0, 96.0]);
+}
+
+/// f_I = −Σ σ ∇N V: node 1 feels −8 − 16 − 4, node 2 feels 4; node 0 is fixed.
+#[test]
+fn step_7_balance_forces() {
+    let (particle, mut node, shape) = setup();
+    steps::balance_forces(&mut node, &particle, &shape, &[]);
+    assert_eq!(scalars(&node.f), F);
+    steps::discard(&mut node);
+    steps::balance_forces(&mut node, &particle, &shape, &FIXED);
+    assert_eq!(scalars(&node.f), [0.0, F[1], F[2]]);
+}
+
+/// p_I += γ f_I Δt, or f_I Δt as printed.
+#[test]
+fn step_8_integrate_momentum() {
+    for (reading, share) in [(StepEight::SecondOrder, 0.5), (StepEight::AsPrinted, 1.0)] {
+        let (_, mut node, _) = setup();
+        with_nodal_values(&mut node);
+        steps::integrate_momentum(&mut node, DT, reading);
+        let expected = [0.0, 1.5 - 28.0 * share * DT, -8.0 + 4.0 * share * DT];
+        assert_eq!(scalars(&node.p), expected);
+    }
+}
+
+/// (29): the second half of the velocity's increment.
+#[test]
+fn step_9_correct() {
+    let (mut particle, mut node, shape) = setup();
+    with_nodal_values(&mut node);
+    steps::correct(&mut particle, &node, &shape, DT);
+    let a_1 = -56.0 / 15.0;
+    let expected = [
+        1.0 + 0.5 * DT * 0.25 * a_1,
+        3.0 + 0.5 * DT * 0.75 * a_1,
+        -2.0 + 0.5 * DT * (0.5 * a_1 + 0.5),
+    ];
+    for (v, expected) in scalars(&particle.v).iter().zip(expected) {
+        assert_relative_eq!(*v, expected, max_relative = 1e-15);
+    }
+    assert_eq!(scalars(&particle.x), [0.25, 0.75, 1.5], "step 9 moves nothing");
+}
+
+/// A value that is not finite is named with its particle, step and time.
+#[test]
+fn step_ends_with_finite_values() {
+    let moment = Moment { step: 3, time: 0.75 };
+    let (particle, _, _) = setup();
+    steps::finite(&particle, moment).unwrap();
+    for (symbol, p) in [("position", 0), ("velocity", 1), ("stress", 2)] {
+        let mut broken = particle.clone();
+        match symbol {
+            "position" => broken.x[p][0] = f64::INFINITY,
+            "velocity" => broken.v[p][0] = f64::NAN,
+            _ => broken.sigma[p][0] = f64::NEG_INFINITY,
+        }
+        let fault = steps::finite(&broken, moment).unwrap_err();
+        assert_eq!(fault, Breakdown::NotFinite { particle: p, moment, symbol });
+    }
+}
