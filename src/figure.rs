@@ -59,7 +59,6 @@ fn draw(curves: Vec<Curve>, frame: Frame) -> String {
     render_to_svg(plots, layout)
 }
 
-// ANCHOR: probe_figure
 /// The history of one probe, computed and, where known, exact.
 pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
     let column = |name: &str| history.column(name).unwrap_or_default();
@@ -91,7 +90,6 @@ pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
     };
     draw(curves, frame)
 }
-// ANCHOR_END: probe_figure
 
 /// A quantity of the exact bar at the material point x over `transits` L/c:
 /// the paper's Figs. 5 and 6. `value` gives the quantity at (x, t).

@@ -42,24 +42,21 @@ fn orders(reading: &str) -> (f64, f64) {
     (of(|e| e.0), of(|e| e.1))
 }
 
-/// Step 8 with γ f Δt: second order in time. (The first-order remainder of the
-/// displacement, see `one_particle_shows_the_remapping_term`, is below these
-/// errors on a fine grid.)
+/// Step 8 with γ f Δt is of second order in time. (The first-order remainder of
+/// the displacement, see `one_particle_shows_the_remapping_term`, is below
+/// these errors on a fine grid.) As printed, with f Δt, the displacement is of
+/// first order; the velocity stays of second order while the particles hardly
+/// move, because p_I of step 8 enters nothing but the positions.
 #[test]
-fn step_eight_second_order() {
-    let (u, v) = orders("second-order");
-    assert!((u - 2.0).abs() < 0.05, "displacement: order {u}");
-    assert!((v - 2.0).abs() < 0.05, "velocity: order {v}");
-}
-
-/// Step 8 as printed, with f Δt: the displacement is of first order. The
-/// velocity stays of second order while the particles hardly move, because
-/// p_I of step 8 enters nothing but the positions.
-#[test]
-fn step_eight_as_printed_is_first_order() {
-    let (u, v) = orders("as-printed");
-    assert!((u - 1.0).abs() < 0.05, "displacement: order {u}");
-    assert!((v - 2.0).abs() < 0.05, "velocity: order {v}");
+fn step_eight_orders_of_both_readings() {
+    let mut table = String::from("reading,displacement,velocity\n");
+    for (reading, expected_u) in [("second-order", 2.0), ("as-printed", 1.0)] {
+        let (u, v) = orders(reading);
+        assert!((u - expected_u).abs() < 0.05, "{reading}, displacement: order {u}");
+        assert!((v - 2.0).abs() < 0.05, "{reading}, velocity: order {v}");
+        table += &format!("{reading},{u:.3},{v:.3}\n");
+    }
+    approve("newmark__orders_in_time", &table);
 }
 
 /// On the bar's jumps v and σ converge like h^(1/3): a second-order scheme

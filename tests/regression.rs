@@ -51,25 +51,6 @@ fn pin(outcome: &Outcome, probe: &str) -> String {
     text
 }
 
-/// Insta with the project's snapshot directory.
-fn approve(name: &str, text: &str) {
-    settings().bind(|| insta::assert_snapshot!(name, text));
-}
-
-fn settings() -> insta::Settings {
-    let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path(concat!(env!("CARGO_MANIFEST_DIR"), "/snapshots"));
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
-    settings
-}
-
-/// An approved picture, as `snapshots/NAME.snap.svg`.
-fn approve_picture(name: &str, svg: String) {
-    let file = format!("{name}.svg");
-    settings().bind(|| insta::assert_binary_snapshot!(&file, svg.into_bytes()));
-}
-
 fn pin_both_probes(scene: &Scene, name: &str) {
     let outcome = finished(scene);
     for probe in ["velocity_end", "stress_three_quarter"] {

@@ -14,7 +14,7 @@ use crate::index;
 use crate::listing::{Definitions, escape, page_of};
 use crate::{maths, read};
 use anyhow::{Context, Result, anyhow, bail};
-use mdbook_preprocessor::book::{Book, BookItem, Chapter};
+use mdbook_preprocessor::book::{Book, BookItem, Chapter, SectionNumber};
 use mdbook_preprocessor::{Preprocessor, PreprocessorContext};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -89,24 +89,28 @@ impl Directives {
         }
     }
 
-    /// The source as chapters of its own, so that code can be linked.
-    fn source_chapters(&self) -> Vec<BookItem> {
+    /// The source as chapters of its own, numbered from `number` on, so that code
+    /// can be linked.
+    fn source_chapters(&self, number: u32) -> Vec<BookItem> {
         let mut top = Chapter::new(
             "The source, file by file",
             "# The source, file by file\n\n".to_string(),
             "source/index.md",
             Vec::new(),
         );
-        for file in self.definitions.files.keys() {
+        top.number = Some(SectionNumber::new([number]));
+        for (n, file) in (1..).zip(self.definitions.files.keys()) {
             let path = page_of(file).replace(".html", ".md");
             let to_root = "../".repeat(path.matches('/').count());
             let from_index = page_of(file).replacen("source/", "", 1);
             top.content.push_str(&format!("- [`{file}`]({from_index})\n"));
             let content = self.definitions.page(file, &to_root);
             let parents = vec![top.name.clone()];
-            top.sub_items.push(BookItem::Chapter(Chapter::new(file, content, path, parents)));
+            let mut chapter = Chapter::new(file, content, path, parents);
+            chapter.number = Some(SectionNumber::new([number, n]));
+            top.sub_items.push(BookItem::Chapter(chapter));
         }
-        vec![BookItem::Separator, BookItem::Chapter(top)]
+        vec![BookItem::PartTitle("The source".to_string()), BookItem::Chapter(top)]
     }
 }
 
@@ -124,7 +128,8 @@ impl Preprocessor for Directives {
         if let Some(error) = failure {
             return Err(error);
         }
-        for item in self.source_chapters() {
+        let numbered = book.chapters().filter(|chapter| chapter.number.is_some()).count();
+        for item in self.source_chapters(numbered as u32 + 1) {
             book.push_item(item);
         }
         Ok(book)

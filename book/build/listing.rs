@@ -58,16 +58,19 @@ impl Definitions {
         Ok(Definitions { by_name, files })
     }
 
-    /// The one definition that `name` in `file` can mean, if there is just one.
+    /// The one definition that `name` in `file` can mean: the only one in that
+    /// file, else in its folder, else in the library.
     fn find(&self, name: &str, file: &str) -> Option<&Definition> {
         let all = self.by_name.get(name)?;
-        let library: Vec<&Definition> =
-            all.iter().filter(|found| found.file.starts_with("src/")).collect();
-        match all.iter().filter(|found| found.file == file).collect::<Vec<_>>()[..] {
-            [own] => Some(own),
-            [] if library.len() == 1 => Some(library[0]),
-            _ => None,
+        let folder = file.rsplit_once('/').map_or("", |(folder, _)| folder);
+        for near in [file, folder, "src/"] {
+            match all.iter().filter(|found| found.file.starts_with(near)).collect::<Vec<_>>()[..] {
+                [] => continue,
+                [one] => return Some(one),
+                _ => return None,
+            }
         }
+        None
     }
 
     /// The line on which test or item `name` is defined in `file`.
@@ -92,17 +95,21 @@ impl Definitions {
             .filter(|line| !line.trim().starts_with("// ANCHOR"))
             .copied()
             .collect();
-        if body.iter().all(|line| line.trim().is_empty()) {
+        let indents = body.iter().filter(|line| !line.trim().is_empty());
+        let Some(indent) = indents.map(|line| line.len() - line.trim_start().len()).min() else {
             bail!("anchor {anchor} of {file} is empty");
-        }
+        };
+        let body: Vec<&str> = body.iter().map(|line| line.get(indent..).unwrap_or("")).collect();
         Ok((body.join("\n"), begin + 2))
     }
 
     /// Rust code as HTML, with links that start at `to_root`.
     pub fn html(&self, code: &str, file: &str, to_root: &str) -> String {
         let mut out = String::new();
-        let mut opens_attribute = false;
-        for (token, kind, _) in tokens(code) {
+        let all: Vec<_> = tokens(code).collect();
+        for (n, &(token, kind, _)) in all.iter().enumerate() {
+            let before = if n > 0 { all[n - 1].0 } else { "" };
+            let after = all.get(n + 1).map_or("", |next| next.0);
             let escaped = escape(token);
             let class = match kind {
                 TokenKind::LineComment { doc_style: Some(_) } => "doc",
@@ -112,7 +119,7 @@ impl Definitions {
                 TokenKind::Literal { .. } => "number",
                 TokenKind::Lifetime { .. } => "keyword",
                 TokenKind::Ident => match self.find(token, file) {
-                    Some(found) if !opens_attribute => {
+                    Some(found) if names_definition(token, before, after) => {
                         let title = format!("{}:{} {}", found.file, found.line, found.says);
                         let page = page_of(&found.file);
                         write!(
@@ -128,7 +135,6 @@ impl Definitions {
                 },
                 _ => "",
             };
-            opens_attribute = token == "#" || (opens_attribute && token == "[");
             match class {
                 "" => out.push_str(&escaped),
                 // A span for each line keeps the lines apart on source pages.
@@ -166,6 +172,18 @@ impl Definitions {
         out.push_str("</pre>\n");
         out
     }
+}
+
+/// True where `token` is a type, a constant, or a function that is called or
+/// defined; a variable or a field may have a function's name by chance, and so
+/// may a method of the standard library.
+fn names_definition(token: &str, before: &str, after: &str) -> bool {
+    const STANDARD: &[&str] =
+        &["clear", "column", "find", "last", "position", "push", "rows", "run"];
+    let type_or_constant = token.len() > 1 && token.starts_with(char::is_uppercase);
+    let called = after == "(" || after == "<";
+    let foreign = before == "." && STANDARD.contains(&token);
+    type_or_constant || (called && !foreign)
 }
 
 /// `src/time/steps.rs` → `source/src/time/steps.html`.

@@ -52,3 +52,23 @@ pub fn slope(h: &[f64], error: &[f64]) -> f64 {
     let cross: f64 = x.iter().zip(&y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
     cross / x.iter().map(|x| (x - mean_x) * (x - mean_x)).sum::<f64>()
 }
+
+/// Compares a text with `snapshots/NAME.snap`.
+pub fn approve(name: &str, text: &str) {
+    settings().bind(|| insta::assert_snapshot!(name, text));
+}
+
+/// Compares a picture with `snapshots/NAME.snap.svg`.
+pub fn approve_picture(name: &str, svg: String) {
+    let file = format!("{name}.svg");
+    settings().bind(|| insta::assert_binary_snapshot!(&file, svg.into_bytes()));
+}
+
+/// Insta with the project's snapshot directory, and names that are claims.
+fn settings() -> insta::Settings {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(concat!(env!("CARGO_MANIFEST_DIR"), "/snapshots"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings
+}

@@ -1,0 +1,287 @@
+//! The tie between paper, code, tests and book, held from both ends; and every
+//! command in book and README, run as it is printed.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const OPEN: &str = "not in the code yet";
+const DEFINITION: &str = "definition only: ";
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &str) -> String {
+    fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// Files below `folder` with this ending, as (path from the top, text).
+fn files(folder: &str, ending: &str) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(root().join(folder)).unwrap() {
+        let entry = entry.unwrap();
+        let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
+        if entry.file_type().unwrap().is_dir() {
+            found.extend(files(&path, ending));
+        } else if path.ends_with(ending) {
+            let text = read(&path);
+            found.push((path, text));
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The chapters of the book: `algorithm.md`, …
+fn chapters() -> Vec<(String, String)> {
+    let name = |path: &str| path.replacen("book/src/", "", 1);
+    let chapters = files("book/src", ".md").into_iter().map(|(path, text)| (name(&path), text));
+    chapters.filter(|(path, _)| path != "SUMMARY.md").collect()
+}
+
+fn records(path: &str) -> Vec<Vec<String>> {
+    let text = read(path);
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    reader.records().map(|row| row.unwrap().iter().map(String::from).collect()).collect()
+}
+
+/// True where `file` defines a function, type or constant called `item`.
+fn defines(file: &str, item: &str) -> bool {
+    let text = read(file);
+    ["fn", "struct", "enum", "const"].iter().any(|word| {
+        let wanted = format!("{word} {item}");
+        text.match_indices(&wanted).any(|(at, _)| {
+            let next = text[at + wanted.len()..].chars().next();
+            !next.is_some_and(|c| c.is_alphanumeric() || c == '_')
+        })
+    })
+}
+
+/// `\tag{n}` for every display formula of a text.
+fn tags(text: &str) -> Vec<String> {
+    text.split("\\tag{").skip(1).map(|rest| rest.split('}').next().unwrap().to_string()).collect()
+}
+
+/// Equations (1) to (59) and steps 1 to 9, each in one row.
+#[test]
+fn equations_are_complete() {
+    let rows = records("data/equations.csv");
+    let numbers: Vec<String> =
+        rows.iter().map(|row| row[0].clone()).filter(|n| !n.is_empty()).collect();
+    assert_eq!(numbers, (1..=59).map(|n| n.to_string()).collect::<Vec<_>>());
+    let steps: Vec<String> =
+        rows.iter().map(|row| row[1].clone()).filter(|n| !n.is_empty()).collect();
+    assert_eq!(steps, (1..=9).map(|n| n.to_string()).collect::<Vec<_>>());
+}
+
+/// What a row names exists: the item, the test, the place in the book. What it
+/// does not name, it says why.
+#[test]
+fn equations_lead_somewhere() {
+    for row in records("data/equations.csv") {
+        let [number, step, says, code, chapter, test] = row.try_into().unwrap();
+        let name = format!("equation {number}, step {step}");
+        assert!(!says.is_empty(), "{name}");
+        match code.split_once("::") {
+            Some((file, item)) => {
+                assert!(file.starts_with("src/"), "{name}: {code}");
+                assert!(defines(file, item), "{name}: {code} is not defined");
+                assert!(test.contains("::"), "{name}: code without a test");
+            }
+            None => {
+                let reason = code.strip_prefix(DEFINITION).unwrap_or("");
+                assert!(code == OPEN || reason.len() > 10, "{name}: {code}");
+            }
+        }
+        match test.split_once("::") {
+            Some((file, item)) => {
+                assert!(file.starts_with("tests/"), "{name}: {test}");
+                assert!(read(file).contains(&format!("fn {item}(")), "{name}: no test {test}");
+            }
+            None => {
+                let reason = test.strip_prefix(DEFINITION).unwrap_or("");
+                assert!(test == OPEN || reason.len() > 10, "{name}: {test}");
+                assert_eq!(code == OPEN, test == OPEN, "{name}");
+            }
+        }
+        if chapter.is_empty() {
+            assert_eq!(code, OPEN, "{name}: not in the book");
+            continue;
+        }
+        let (file, place) = chapter.split_once(".html#").unwrap();
+        let text = read(&format!("book/src/{file}.md"));
+        let found = match place.strip_prefix("eq-") {
+            Some(n) => n == number && tags(&text).contains(&number),
+            None => place == format!("step-{step}") && text.contains(&format!("{{#{place}}}")),
+        };
+        assert!(found, "{name}: {chapter} is not in the book");
+    }
+}
+
+/// Every numbered formula and every step of the book is in the index, with
+/// that place, and stands only once.
+#[test]
+fn equations_of_the_book_are_indexed() {
+    let mut places: BTreeMap<String, String> = BTreeMap::new();
+    for (chapter, text) in chapters() {
+        let html = chapter.replace(".md", ".html");
+        for n in tags(&text) {
+            let place = format!("{html}#eq-{n}");
+            let before = places.insert(n.clone(), place);
+            assert_eq!(before, None, "({n}) stands twice");
+        }
+    }
+    let rows = records("data/equations.csv");
+    for (n, place) in &places {
+        let row = rows.iter().find(|row| row[0] == *n).unwrap_or_else(|| panic!("no row ({n})"));
+        assert_eq!(row[4], *place);
+    }
+}
+
+/// Every anchor in the code is quoted by a chapter, and every quoted one exists.
+#[test]
+fn anchors_are_quoted() {
+    let mut quoted = Vec::new();
+    for (chapter, text) in chapters() {
+        for rest in text.split("{{#code ").skip(1) {
+            let place = rest.split("}}").next().unwrap().trim().to_string();
+            let (file, anchor) = place.split_once(':').unwrap();
+            let source = read(file);
+            for marker in ["ANCHOR", "ANCHOR_END"] {
+                let line = format!("// {marker}: {anchor}");
+                let found = source.lines().filter(|text| text.trim() == line).count();
+                assert_eq!(found, 1, "{chapter}: {marker} of {place}");
+            }
+            quoted.push(place);
+        }
+    }
+    for (file, text) in files("src", ".rs") {
+        for line in text.lines() {
+            if let Some(anchor) = line.trim().strip_prefix("// ANCHOR: ") {
+                let place = format!("{file}:{anchor}");
+                assert!(quoted.contains(&place), "{place} is marked and quoted nowhere");
+            }
+        }
+    }
+    assert!(quoted.len() > 25, "{}", quoted.len());
+}
+
+/// Every identifier of the symbol table is a word of the code.
+#[test]
+fn symbols_are_in_the_code() {
+    let code: String = files("src", ".rs").into_iter().map(|(_, text)| text).collect();
+    let words: std::collections::BTreeSet<&str> =
+        code.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+    for row in records("data/symbols.csv") {
+        assert_eq!(row.len(), 6, "{row:?}");
+        assert!(row.iter().all(|cell| !cell.is_empty()), "{row:?}");
+        assert!(words.contains(row[1].as_str()), "{} is not in the code", row[1]);
+    }
+}
+
+/// Results are approved, not typed: no decimal number in the prose under "What
+/// came out", outside of directives and formulas.
+#[test]
+fn results_are_not_typed() {
+    let mut sections = 0;
+    for (chapter, text) in chapters() {
+        for section in text.split("\n## ").filter(|section| section.starts_with("What came out")) {
+            sections += 1;
+            let mut prose = String::new();
+            for piece in section.split("{{#") {
+                prose.push_str(piece.split_once("}}").map_or(piece, |(_, after)| after));
+            }
+            let prose: String = prose.split('$').step_by(2).collect();
+            let letters: Vec<char> = prose.chars().collect();
+            for at in letters.windows(3) {
+                let decimal = at[0].is_ascii_digit() && at[1] == '.' && at[2].is_ascii_digit();
+                assert!(!decimal, "{chapter}: a typed number in\n{prose}");
+            }
+        }
+    }
+    assert!(sections >= 5, "{sections}");
+}
+
+/// Every chapter but the index ends with an exercise whose answer is a command.
+#[test]
+fn chapters_end_with_an_exercise() {
+    for (chapter, text) in chapters().into_iter().filter(|(name, _)| name != "equations.md") {
+        let (_, exercise) = text
+            .split_once("\n## Exercise\n")
+            .unwrap_or_else(|| panic!("{chapter} has no exercise"));
+        assert!(exercise.contains("**Answer.**"), "{chapter}: no answer");
+        assert!(exercise.contains("```console\n$ "), "{chapter}: no command");
+        assert!(!exercise.contains("\n## "), "{chapter}: something after the exercise");
+    }
+}
+
+/// Every chapter is in the table of contents.
+#[test]
+fn chapters_are_in_the_summary() {
+    let summary = read("book/src/SUMMARY.md");
+    for (chapter, _) in chapters() {
+        assert!(summary.contains(&format!("({chapter})")), "{chapter}");
+    }
+}
+
+/// A directory of its own with the scenes, where commands may write.
+fn workplace(name: &str) -> PathBuf {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::remove_dir_all(&dir).ok();
+    fs::create_dir_all(dir.join("data/scenes")).unwrap();
+    for entry in fs::read_dir(root().join("data/scenes")).unwrap() {
+        let entry = entry.unwrap();
+        fs::copy(entry.path(), dir.join("data/scenes").join(entry.file_name())).unwrap();
+    }
+    dir
+}
+
+/// Runs a shell line with the program in place of `cargo run --release`.
+fn shell(dir: &Path, line: &str) -> String {
+    let program = format!("'{}'", env!("CARGO_BIN_EXE_lme-mpm"));
+    let line = line
+        .replace("cargo run --release --quiet -- ", &format!("{program} "))
+        .replace("cargo run --release -- ", &format!("{program} "))
+        .replace("cargo run --release", &program);
+    let output = Command::new("sh").args(["-c", &line]).current_dir(dir).output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "`{line}`:\n{stderr}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Every `console` block of the book runs, and prints what is printed.
+#[test]
+fn commands_of_the_book_run() {
+    let mut commands = 0;
+    for (chapter, text) in chapters() {
+        let dir = workplace(&format!("book-{}", chapter.trim_end_matches(".md")));
+        for block in text.split("```console\n").skip(1) {
+            let block = block.split("```").next().unwrap();
+            for piece in block.split("$ ").skip(1) {
+                let (line, expected) = piece.split_once('\n').unwrap();
+                let printed = shell(&dir, line);
+                if !expected.is_empty() {
+                    assert_eq!(printed, expected, "{chapter}: `{line}`");
+                }
+                commands += 1;
+            }
+        }
+    }
+    assert!(commands >= 15, "{commands}");
+}
+
+/// Every `cargo run` line of the README runs.
+#[test]
+fn commands_of_the_readme_run() {
+    let readme = read("README.md");
+    let dir = workplace("readme");
+    let blocks = readme.split("```sh\n").skip(1).map(|block| block.split("```").next().unwrap());
+    let lines: Vec<&str> =
+        blocks.flat_map(str::lines).filter(|line| line.contains("cargo run")).collect();
+    assert!(lines.len() >= 5, "{lines:?}");
+    for line in lines {
+        shell(&dir, line);
+    }
+}
