@@ -13,9 +13,12 @@ const SIZE: (f64, f64) = (860.0, 420.0);
 const EXACT: &str = "#999999";
 const COLOURS: [&str; 3] = ["#0072b2", "#d55e00", "#009e73"];
 
+/// A curve's points.
+pub type Points = Vec<(f64, f64)>;
+
 /// One line of a picture.
 struct Curve {
-    points: Vec<(f64, f64)>,
+    points: Points,
     colour: &'static str,
     width: f64,
     /// Empty: not in the legend.
@@ -153,8 +156,8 @@ pub fn fronts(bar: &Bar, transits: f64) -> String {
 
 /// Errors against the number of cells, both on logarithmic axes; each list of
 /// `(cells, error)` has its name.
-pub fn convergence(title: &str, lists: &[(&str, Vec<(f64, f64)>)]) -> String {
-    let curve = |(n, (name, points)): (usize, &(&str, Vec<(f64, f64)>))| Curve {
+pub fn convergence(title: &str, lists: &[(&str, Points)]) -> String {
+    let curve = |(n, (name, points)): (usize, &(&str, Points))| Curve {
         points: points.clone(),
         colour: COLOURS[n % COLOURS.len()],
         width: 2.0,
