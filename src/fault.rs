@@ -10,7 +10,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// A point in a run: time step k and time t [s].
+/// A point in a run: time step k and time t (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     pub step: usize,

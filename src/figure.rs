@@ -6,7 +6,7 @@ use crate::scene::{Probe, Scene};
 use kuva::prelude::*;
 use std::sync::Arc;
 
-/// Width and height of a picture [px].
+/// Width and height of a picture (px).
 const SIZE: (f64, f64) = (860.0, 420.0);
 
 /// Colour-blind safe (Okabe & Ito 2008); the exact curve stands behind.

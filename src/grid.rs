@@ -7,13 +7,13 @@ use nalgebra::SVector;
 /// corner: node i along an axis stands at (i − before) h.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid<const D: usize> {
-    /// h, the spacing along each axis [m].
+    /// h, the spacing along each axis (m).
     pub h: SVector<f64, D>,
     /// Cells along each axis, those beyond the body included.
     pub cells: [usize; D],
     /// Cells below the body's lower corner along each axis.
     pub before: [usize; D],
-    /// The grid's upper corner [m]: the body's own corner, to the last bit,
+    /// The grid's upper corner (m): the body's own corner, to the last bit,
     /// where the grid ends with the body.
     pub upper: SVector<f64, D>,
 }
@@ -28,7 +28,7 @@ pub struct Located<const D: usize> {
 }
 
 impl<const D: usize> Grid<D> {
-    /// A grid of `cells` cells over a body of `length` [m] along each axis, and
+    /// A grid of `cells` cells over a body of `length` (m) along each axis, and
     /// `beyond` cells more before and after it.
     pub fn over(length: [f64; D], cells: [usize; D], beyond: [[usize; 2]; D]) -> Self {
         let h = SVector::from_fn(|d, _| length[d] / cells[d] as f64);
@@ -58,7 +58,7 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// x_I [m].
+    /// x_I (m).
     pub fn position(&self, I: usize) -> SVector<f64, D> {
         let i = self.index(I);
         SVector::from_fn(|d, _| (i[d] as f64 - self.before[d] as f64) * self.h[d])
@@ -79,7 +79,7 @@ impl<const D: usize> Grid<D> {
         std::array::from_fn(|d| corner >> d & 1)
     }
 
-    /// The cell that holds `x` [m]; `None` outside the grid or for NaN.
+    /// The cell that holds `x` (m); `None` outside the grid or for NaN.
     ///
     /// A point on a face belongs to the cell above it, except on the grid's
     /// own upper face.

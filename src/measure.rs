@@ -20,12 +20,12 @@ pub fn rms(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
 // ANCHOR_END: rms
 
 // ANCHOR: energy
-/// ½ m_p |v_p|² [J].
+/// ½ m_p |v_p|² (J).
 pub fn kinetic_energy_of<const D: usize>(particle: &Particles<D>, p: usize) -> f64 {
     0.5 * particle.m[p] * particle.v[p].dot(&particle.v[p])
 }
 
-/// ½ σ_p : D⁻¹ : σ_p m_p / ρ_p [J].
+/// ½ σ_p : D⁻¹ : σ_p m_p / ρ_p (J).
 pub fn strain_energy_of<const D: usize>(
     particle: &Particles<D>,
     law: &LinearElastic,
@@ -34,18 +34,18 @@ pub fn strain_energy_of<const D: usize>(
     law.energy_density(&particle.sigma[p]) * (particle.m[p] / particle.rho[p])
 }
 
-/// Σ_p of the kinetic energy [J].
+/// Σ_p of the kinetic energy (J).
 pub fn kinetic_energy<const D: usize>(particle: &Particles<D>) -> f64 {
     (0..particle.len()).map(|p| kinetic_energy_of(particle, p)).sum()
 }
 
-/// Σ_p of the strain energy [J].
+/// Σ_p of the strain energy (J).
 pub fn strain_energy<const D: usize>(particle: &Particles<D>, law: &LinearElastic) -> f64 {
     (0..particle.len()).map(|p| strain_energy_of(particle, law, p)).sum()
 }
 // ANCHOR_END: energy
 
-/// Σ_p m_p v_p [kg m/s].
+/// Σ_p m_p v_p (kg m/s).
 pub fn momentum<const D: usize>(particle: &Particles<D>) -> SVector<f64, D> {
     let mut sum = SVector::zeros();
     for p in 0..particle.len() {

@@ -23,20 +23,20 @@ pub struct Model<const D: usize> {
     /// Node I has zero velocity component i.
     pub fixed: Vec<(usize, usize)>,
     pub integrator: Integrator,
-    /// Δt [s].
+    /// Δt (s).
     pub dt: f64,
     /// N_t, the number of time steps.
     pub steps: usize,
 }
 
-/// c = √((λ + 2μ) / ρ) [m/s], the speed of a plane wave, (46) in the bar.
+/// c = √((λ + 2μ) / ρ) (m/s), the speed of a plane wave, (46) in the bar.
 pub fn wave_speed(body: &Body) -> f64 {
     let law = LinearElastic::new(body.youngs_modulus, body.poisson_ratio);
     libm::sqrt(law.p_wave_modulus() / body.density)
 }
 
 impl Scene {
-    /// The smallest spacing [m].
+    /// The smallest spacing (m).
     fn spacing(&self) -> f64 {
         let per_axis = self.body.length.iter().zip(&self.grid.cells);
         per_axis.map(|(length, cells)| length / *cells as f64).fold(f64::INFINITY, f64::min)

@@ -23,7 +23,7 @@ pub struct Outcome {
     /// The last state, one row for each particle.
     pub particles: Table,
     pub cost: Cost,
-    /// Δt [s].
+    /// Δt (s).
     pub dt: f64,
 }
 
@@ -44,7 +44,7 @@ fn per_axis(name: &str, dimension: usize) -> Vec<String> {
     }
 }
 
-/// `step`, `t`, energies [J], momentum [kg m/s], and each probe followed by its
+/// `step`, `t`, energies (J), momentum (kg m/s), and each probe followed by its
 /// exact value where the scene has an exact solution.
 pub fn history_columns(scene: &Scene, with_exact: bool) -> Vec<String> {
     let mut columns: Vec<String> =
@@ -117,7 +117,7 @@ fn march<const D: usize>(
 struct Follow<const D: usize> {
     quantity: Quantity,
     particle: usize,
-    /// Where the particle stood at t = 0 [m].
+    /// Where the particle stood at t = 0 (m).
     reference: SVector<f64, D>,
 }
 
@@ -126,7 +126,7 @@ struct Recorder<const D: usize> {
     history: Table,
     follow: Vec<Follow<D>>,
     exact: Option<Exact>,
-    /// Total energy at the start [J].
+    /// Total energy at the start (J).
     energy: f64,
 }
 

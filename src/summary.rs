@@ -18,11 +18,11 @@ pub struct Line {
 /// The scales that make errors relative, from v0, the largest initial speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// v0 [m/s].
+    /// v0 (m/s).
     pub velocity: f64,
-    /// Z v0 / 2 [Pa], the plateau of the stress.
+    /// Z v0 / 2 (Pa), the plateau of the stress.
     pub stress: f64,
-    /// v0 L / 4c [m].
+    /// v0 L / 4c (m).
     pub displacement: f64,
 }
 
@@ -51,7 +51,7 @@ impl Scales {
     }
 }
 
-/// All lines of the summary; `wall_time` [s] of the time loop.
+/// All lines of the summary; `wall_time` (s) of the time loop.
 pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<Line> {
     let mut lines = Vec::new();
     let mut add = |quantity: String, value: f64, unit| lines.push(Line { quantity, value, unit });

@@ -23,7 +23,7 @@ pub struct Outside {
 }
 
 // ANCHOR: tabulate
-/// Fills the table with N_Ip [–] and ∇N_Ip [1/m] at the positions `x` [m].
+/// Fills the table with N_Ip (–) and ∇N_Ip (1/m) at the positions `x` (m).
 ///
 /// Errors: [`Outside`] with the first particle that has left the grid.
 /// Tests: `tests/laws.rs`, `basis_*`.

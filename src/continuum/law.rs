@@ -6,7 +6,7 @@ use nalgebra::SMatrix;
 // ANCHOR: strain_rate
 /// (2): ε̇ = ∇ˢv = ½ (∇v + ∇ᵀv).
 ///
-/// `grad_v` D×D [1/s]; returns D×D [1/s].
+/// `grad_v` D×D (1/s); returns D×D (1/s).
 pub fn symmetric_part<const D: usize>(grad_v: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
     (grad_v + grad_v.transpose()) * 0.5
 }
@@ -20,14 +20,14 @@ pub fn symmetric_part<const D: usize>(grad_v: &SMatrix<f64, D, D>) -> SMatrix<f6
 /// slender bar. A bar with ν ≠ 0 would need uniaxial stress instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearElastic {
-    /// λ = E ν / ((1 + ν)(1 − 2ν)) [Pa].
+    /// λ = E ν / ((1 + ν)(1 − 2ν)) (Pa).
     pub lambda: f64,
-    /// μ = E / (2 (1 + ν)) [Pa].
+    /// μ = E / (2 (1 + ν)) (Pa).
     pub mu: f64,
 }
 
 impl LinearElastic {
-    /// From Young's modulus E > 0 [Pa] and Poisson's ratio −1 < ν < ½ [–].
+    /// From Young's modulus E > 0 (Pa) and Poisson's ratio −1 < ν < ½ (–).
     pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Self {
         let (e, nu) = (youngs_modulus, poisson_ratio);
         LinearElastic {
@@ -36,12 +36,12 @@ impl LinearElastic {
         }
     }
 
-    /// λ + 2μ [Pa], the modulus of a plane wave, c = √((λ + 2μ) / ρ).
+    /// λ + 2μ (Pa), the modulus of a plane wave, c = √((λ + 2μ) / ρ).
     pub fn p_wave_modulus(&self) -> f64 {
         self.lambda + 2.0 * self.mu
     }
 
-    /// (3) over one step: Δσ = D : Δε = λ tr(Δε) 1 + 2μ Δε  [Pa].
+    /// (3) over one step: Δσ = D : Δε = λ tr(Δε) 1 + 2μ Δε  (Pa).
     pub fn stress_increment<const D: usize>(
         &self,
         d_eps: &SMatrix<f64, D, D>,
@@ -49,7 +49,7 @@ impl LinearElastic {
         SMatrix::identity() * (self.lambda * d_eps.trace()) + d_eps * (2.0 * self.mu)
     }
 
-    /// ½ σ : D⁻¹ : σ, the elastic energy per volume [J/m³]; (3) inverted gives
+    /// ½ σ : D⁻¹ : σ, the elastic energy per volume (J/m³); (3) inverted gives
     /// D⁻¹ : σ = (σ − λ tr(σ) / (dλ + 2μ) 1) / 2μ in d dimensions.
     pub fn energy_density<const D: usize>(&self, sigma: &SMatrix<f64, D, D>) -> f64 {
         let share = self.lambda / (D as f64 * self.lambda + 2.0 * self.mu);
@@ -60,7 +60,7 @@ impl LinearElastic {
 // ANCHOR_END: elastic
 
 // ANCHOR: density
-/// (17) over one step: ρ ← ρ / (1 + tr Δε)  [kg/m³].
+/// (17) over one step: ρ ← ρ / (1 + tr Δε)  (kg/m³).
 ///
 /// `None` when 1 + tr Δε ≤ 0: the step would turn the material inside out.
 pub fn density<const D: usize>(rho: f64, d_eps: &SMatrix<f64, D, D>) -> Option<f64> {

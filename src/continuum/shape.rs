@@ -36,7 +36,7 @@ impl<const D: usize> Shape<D> {
         self.entry.clear();
     }
 
-    /// Adds N_Ip [–] and ∇N_Ip [1/m] to the row that is being written.
+    /// Adds N_Ip (–) and ∇N_Ip (1/m) to the row that is being written.
     pub fn push(&mut self, I: usize, N: f64, grad_N: SVector<f64, D>) {
         self.entry.push(Entry { I, N, grad_N });
     }

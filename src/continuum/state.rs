@@ -11,17 +11,17 @@ use nalgebra::{SMatrix, SVector};
 /// Material points: everything that is remembered from step to step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Particles<const D: usize> {
-    /// m_p, mass [kg].
+    /// m_p, mass (kg).
     pub m: Vec<f64>,
-    /// x_p, position [m].
+    /// x_p, position (m).
     pub x: Vec<SVector<f64, D>>,
-    /// v_p, velocity [m/s].
+    /// v_p, velocity (m/s).
     pub v: Vec<SVector<f64, D>>,
-    /// ρ_p, density [kg/m³].
+    /// ρ_p, density (kg/m³).
     pub rho: Vec<f64>,
-    /// σ_p, Cauchy stress [Pa].
+    /// σ_p, Cauchy stress (Pa).
     pub sigma: Vec<SMatrix<f64, D, D>>,
-    /// Δε_p, strain increment of the step [–].
+    /// Δε_p, strain increment of the step (–).
     pub d_eps: Vec<SMatrix<f64, D, D>>,
 }
 // ANCHOR_END: particles
@@ -30,13 +30,13 @@ pub struct Particles<const D: usize> {
 /// Grid points: scratch paper, wiped in step 2 of every time step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes<const D: usize> {
-    /// m_I, lumped mass [kg].
+    /// m_I, lumped mass (kg).
     pub m: Vec<f64>,
-    /// p_I, momentum [kg m/s].
+    /// p_I, momentum (kg m/s).
     pub p: Vec<SVector<f64, D>>,
-    /// v_I = p_I / m_I, velocity [m/s].
+    /// v_I = p_I / m_I, velocity (m/s).
     pub v: Vec<SVector<f64, D>>,
-    /// f_I, force [N].
+    /// f_I, force (N).
     pub f: Vec<SVector<f64, D>>,
 }
 // ANCHOR_END: nodes
@@ -56,8 +56,8 @@ impl<const D: usize> Particles<D> {
         + 2 * size_of::<SVector<f64, D>>()
         + 2 * size_of::<SMatrix<f64, D, D>>();
 
-    /// Particles at rest and free of stress at positions `x` [m], each with
-    /// mass `m` [kg] and density `rho` [kg/m³].
+    /// Particles at rest and free of stress at positions `x` (m), each with
+    /// mass `m` (kg) and density `rho` (kg/m³).
     pub fn at_rest(x: Vec<SVector<f64, D>>, m: f64, rho: f64) -> Self {
         let n = x.len();
         Particles {

@@ -7,7 +7,7 @@ use super::state::{Nodes, Particles};
 use nalgebra::{SMatrix, SVector};
 
 // ANCHOR: lumped_mass
-/// (13) lumped by rows: m_I += Σ_p m_p N_Ip  [kg].
+/// (13) lumped by rows: m_I += Σ_p m_p N_Ip  (kg).
 ///
 /// Since Σ_J N_Jp = 1, the row sum of m_IJ = Σ_p N_Ip m_p N_Jp is this.
 pub fn lumped_mass<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, shape: &Shape<D>) {
@@ -18,7 +18,7 @@ pub fn lumped_mass<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>,
 // ANCHOR_END: lumped_mass
 
 // ANCHOR: momentum
-/// p_I += Σ_p m_p v_p N_Ip  [kg m/s].
+/// p_I += Σ_p m_p v_p N_Ip  (kg m/s).
 pub fn momentum<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, shape: &Shape<D>) {
     for (I, p, N_Ip, _) in shape.pairs() {
         node.p[I] += particle.v[p] * (particle.m[p] * N_Ip);
@@ -27,7 +27,7 @@ pub fn momentum<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, sh
 // ANCHOR_END: momentum
 
 // ANCHOR: internal_force
-/// (14): f_I −= Σ_p σ_p ∇N_Ip m_p / ρ_p  [N].
+/// (14): f_I −= Σ_p σ_p ∇N_Ip m_p / ρ_p  (N).
 pub fn internal_force<const D: usize>(
     node: &mut Nodes<D>,
     particle: &Particles<D>,
@@ -41,7 +41,7 @@ pub fn internal_force<const D: usize>(
 // ANCHOR_END: internal_force
 
 // ANCHOR: velocity_gradient
-/// The gradient inside (16): ∇v at particle p, Σ_I (v_I − v_0) ⊗ ∇N_Ip  [1/s].
+/// The gradient inside (16): ∇v at particle p, Σ_I (v_I − v_0) ⊗ ∇N_Ip  (1/s).
 ///
 /// v_0 is the velocity of the first of the particle's nodes. It may be taken
 /// off because Σ_I ∇N_Ip = 0; then nodes that move alike give exactly zero,
@@ -67,7 +67,7 @@ pub fn velocity_gradient<const D: usize>(
 // ANCHOR: to_particle
 /// (19): Σ_I q_I N_Ip / m_I, a nodal momentum or force carried to particle p.
 ///
-/// `q` [kg m/s] gives m/s, `q` [N] gives m/s². The nodal sum q_I is never
+/// `q` (kg m/s) gives m/s, `q` (N) gives m/s². The nodal sum q_I is never
 /// divided by m_I alone: N_Ip / m_I stays at or below 1 / m_p however small
 /// the mass of the node, while f_I / m_I does not. A node without mass carries
 /// nothing.

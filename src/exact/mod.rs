@@ -7,7 +7,7 @@ use crate::fault::Fault;
 use crate::scene::Scene;
 use riemann::{Bar, End, Patch};
 
-/// v [m/s], σ [Pa] and u [m] at one material point and time.
+/// v (m/s), σ (Pa) and u (m) at one material point and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fields {
     pub velocity: f64,
@@ -49,8 +49,8 @@ impl Exact {
         }))
     }
 
-    /// v, σ and u of the material point that stood at `x` [m] from the body's
-    /// lower corner at t = 0, at time `t` >= 0 [s].
+    /// v, σ and u of the material point that stood at `x` (m) from the body's
+    /// lower corner at t = 0, at time `t` >= 0 (s).
     pub fn at(&self, x: f64, t: f64) -> Fields {
         match self {
             Exact::Bar(bar) => bar.at(x, t),

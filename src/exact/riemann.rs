@@ -30,11 +30,11 @@ pub enum Family {
 /// A stretch of the bar that is thrown with one velocity; the rest is at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
-    /// [m].
+    /// (m).
     pub from: f64,
-    /// [m].
+    /// (m).
     pub to: f64,
-    /// [m/s].
+    /// (m/s).
     pub velocity: f64,
 }
 
@@ -44,11 +44,11 @@ pub struct Patch {
 /// side of x; at x = L it is that of the left-hand side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
-    /// L [m].
+    /// L (m).
     pub length: f64,
-    /// ρ [kg/m³].
+    /// ρ (kg/m³).
     pub density: f64,
-    /// E, or λ + 2μ for uniaxial strain [Pa].
+    /// E, or λ + 2μ for uniaxial strain (Pa).
     pub modulus: f64,
     /// At x = 0 and at x = L.
     pub ends: [End; 2],
@@ -67,7 +67,7 @@ pub fn eigenvectors(Z: f64) -> Matrix2<f64> {
     Matrix2::new(-Z, Z, 1.0, 1.0)
 }
 
-/// P⁻¹, with Z = √(Eρ) [Pa s/m].
+/// P⁻¹, with Z = √(Eρ) (Pa s/m).
 pub fn eigenvectors_inverse(Z: f64) -> Matrix2<f64> {
     Matrix2::new(-1.0 / Z, 1.0, 1.0 / Z, 1.0) * 0.5
 }
@@ -101,24 +101,24 @@ struct Piece {
     family: Family,
     /// Product of the reflections between (x, t) and here.
     sign: f64,
-    /// From here back to there [m].
+    /// From here back to there (m).
     from: f64,
     to: f64,
 }
 
 impl Bar {
-    /// c = √(E/ρ), (46) [m/s].
+    /// c = √(E/ρ), (46) (m/s).
     pub fn c(&self) -> f64 {
         libm::sqrt(self.modulus / self.density)
     }
 
-    /// Z = √(Eρ) = ρc, the impedance [Pa s/m].
+    /// Z = √(Eρ) = ρc, the impedance (Pa s/m).
     pub fn Z(&self) -> f64 {
         libm::sqrt(self.modulus * self.density)
     }
 
     // ANCHOR: at
-    /// v, σ and u at 0 ≤ `x` ≤ L [m] and `t` ≥ 0 [s].
+    /// v, σ and u at 0 ≤ `x` ≤ L (m) and `t` ≥ 0 (s).
     pub fn at(&self, x: f64, t: f64) -> Fields {
         let (periods, s) = self.travel(t);
         let R = Vector2::new(self.invariant(Family::I, x, s), self.invariant(Family::II, x, s));
@@ -134,7 +134,7 @@ impl Bar {
     // ANCHOR_END: at
 
     // ANCHOR: travel
-    /// c t as n periods of 4L and a rest in [0, 4L): (n, rest [m]).
+    /// c t as n periods of 4L and a rest in [0, 4L): (n, rest (m)).
     ///
     /// 4L is a period of every pair of ends. c and the product c t are carried
     /// with twice the digits, so the rest is right to the last bits after any
@@ -159,7 +159,7 @@ impl Bar {
     }
     // ANCHOR_END: travel
 
-    /// What all points have moved by after one period [m]: 4L/c times the mean
+    /// What all points have moved by after one period (m): 4L/c times the mean
     /// velocity of a bar with two free ends, else 0.
     fn drift(&self) -> f64 {
         match self.ends {
@@ -173,7 +173,7 @@ impl Bar {
 
     // ANCHOR: trace_back
     /// The characteristic of `family` through x, followed back by the path `s`
-    /// [m] in straight pieces from end to end.
+    /// (m) in straight pieces from end to end.
     fn trace_back(&self, mut family: Family, x: f64, s: f64) -> impl Iterator<Item = Piece> {
         let (L, ends) = (self.length, self.ends);
         let (mut at, mut left, mut sign, mut done) = (x, s, 1.0, false);
@@ -218,7 +218,7 @@ impl Bar {
         }
     }
 
-    /// v at t = 0 [m/s].
+    /// v at t = 0 (m/s).
     fn initial_velocity(&self, x: f64) -> f64 {
         let covers = |a: &&Patch| a.from <= x && (x < a.to || (x == a.to && x == self.length));
         self.patches.iter().find(covers).map_or(0.0, |a| a.velocity)
@@ -226,7 +226,7 @@ impl Bar {
     // ANCHOR_END: initial
 
     // ANCHOR: displacement
-    /// ∫ R dt over the past, times c [m²/s]: u = ∫ v dt = ∫ R^I dt + ∫ R^II dt,
+    /// ∫ R dt over the past, times c (m²/s): u = ∫ v dt = ∫ R^I dt + ∫ R^II dt,
     /// and along a characteristic dt is ds / c.
     fn travelled(&self, family: Family, x: f64, s: f64) -> f64 {
         let mut sum = 0.0;
@@ -242,7 +242,7 @@ impl Bar {
     // ANCHOR_END: displacement
 
     // ANCHOR: fronts
-    /// Where v and σ jump at time `t`, in ascending order [m].
+    /// Where v and σ jump at time `t`, in ascending order (m).
     ///
     /// Each jump of the initial velocity sends one front each way. A fixed end
     /// whose material was thrown is such a jump too.

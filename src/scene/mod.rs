@@ -53,15 +53,15 @@ pub enum Mass {
 /// A box of linear elastic material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// L along each axis [m].
+    /// L along each axis (m).
     pub length: Vec<f64>,
-    /// The lower corner [m].
+    /// The lower corner (m).
     pub origin: Vec<f64>,
-    /// ρ at the start [kg/m³].
+    /// ρ at the start (kg/m³).
     pub density: f64,
-    /// E [Pa].
+    /// E (Pa).
     pub youngs_modulus: f64,
-    /// ν [–].
+    /// ν (–).
     pub poisson_ratio: f64,
 }
 
@@ -80,7 +80,7 @@ pub struct Time {
     pub integrator: Integrator,
     /// The largest Courant number c Δt / h.
     pub cfl: f64,
-    /// The end of the run [s].
+    /// The end of the run (s).
     pub end: f64,
 }
 
@@ -93,11 +93,11 @@ pub struct Side {
 /// A box [from, to) in the body's frame with an initial velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// Lower corner from the body's lower corner [m].
+    /// Lower corner from the body's lower corner (m).
     pub from: Vec<f64>,
-    /// Upper corner from the body's lower corner [m].
+    /// Upper corner from the body's lower corner (m).
     pub to: Vec<f64>,
-    /// [m/s].
+    /// (m/s).
     pub velocity: Vec<f64>,
 }
 
@@ -106,7 +106,7 @@ pub struct Region {
 pub struct Probe {
     pub name: String,
     pub quantity: Quantity,
-    /// From the body's lower corner [m].
+    /// From the body's lower corner (m).
     pub position: Vec<f64>,
 }
 

@@ -15,7 +15,7 @@ use toml::Spanned;
 const AXES: [(&str, [&str; 2]); 3] =
     [("x", ["left", "right"]), ("y", ["bottom", "top"]), ("z", ["back", "front"])];
 
-/// The most memory that a scene may ask for [bytes].
+/// The most memory that a scene may ask for (bytes).
 const MEMORY: f64 = 16.0 * 1024.0 * 1024.0 * 1024.0;
 
 /// Range checks that know where every value was written.

@@ -69,7 +69,7 @@ pub fn tabulate<const D: usize>(
 // ANCHOR_END: tabulate_step
 
 // ANCHOR: transfer
-/// Step 3: m_I = Σ_p m_p N_Ip  [kg] and p_I = Σ_p m_p v_p N_Ip  [kg m/s].
+/// Step 3: m_I = Σ_p m_p N_Ip  (kg) and p_I = Σ_p m_p v_p N_Ip  (kg m/s).
 pub fn transfer<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, shape: &Shape<D>) {
     sums::lumped_mass(node, particle, shape);
     sums::momentum(node, particle, shape);
@@ -77,7 +77,7 @@ pub fn transfer<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, sh
 // ANCHOR_END: transfer
 
 // ANCHOR: impose_essential
-/// Step 4: p_I = 0 where the boundary is fixed, then v_I = p_I / m_I  [m/s].
+/// Step 4: p_I = 0 where the boundary is fixed, then v_I = p_I / m_I  (m/s).
 pub fn impose_essential<const D: usize>(node: &mut Nodes<D>, fixed: &Fixed) {
     for &(I, i) in fixed {
         node.p[I][i] = 0.0;
@@ -91,7 +91,7 @@ pub fn impose_essential<const D: usize>(node: &mut Nodes<D>, fixed: &Fixed) {
 // ANCHOR_END: impose_essential
 
 // ANCHOR: increment_strain
-/// Step 5: Δε_p = Δt ε̇_p, with (16) ε̇_p = ½ Σ_I (∇N_Ip v_I + (∇N_Ip v_I)ᵀ)  [–].
+/// Step 5: Δε_p = Δt ε̇_p, with (16) ε̇_p = ½ Σ_I (∇N_Ip v_I + (∇N_Ip v_I)ᵀ)  (–).
 pub fn increment_strain<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -106,7 +106,7 @@ pub fn increment_strain<const D: usize>(
 // ANCHOR_END: increment_strain
 
 // ANCHOR: update_density
-/// Step 6: ρ_p ← ρ_p / (1 + tr Δε_p)  [kg/m³].
+/// Step 6: ρ_p ← ρ_p / (1 + tr Δε_p)  (kg/m³).
 ///
 /// Errors: [`Breakdown::Inverted`] when 1 + tr Δε_p ≤ 0.
 pub fn update_density<const D: usize>(
@@ -126,7 +126,7 @@ pub fn update_density<const D: usize>(
 // ANCHOR_END: update_density
 
 // ANCHOR: update_stress
-/// (3), between steps 6 and 7: σ_p += D : Δε_p  [Pa].
+/// (3), between steps 6 and 7: σ_p += D : Δε_p  (Pa).
 pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &LinearElastic) {
     for p in 0..particle.len() {
         particle.sigma[p] += law.stress_increment(&particle.d_eps[p]);
@@ -135,7 +135,7 @@ pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &LinearEl
 // ANCHOR_END: update_stress
 
 // ANCHOR: balance_forces
-/// Step 7: f_I = f_I^int, (14), and f_I = 0 where the boundary is fixed  [N].
+/// Step 7: f_I = f_I^int, (14), and f_I = 0 where the boundary is fixed  (N).
 pub fn balance_forces<const D: usize>(
     node: &mut Nodes<D>,
     particle: &Particles<D>,
@@ -150,7 +150,7 @@ pub fn balance_forces<const D: usize>(
 // ANCHOR_END: balance_forces
 
 // ANCHOR: integrate_momentum
-/// Step 8: p_I += γ f_I Δt, or f_I Δt as printed  [kg m/s].
+/// Step 8: p_I += γ f_I Δt, or f_I Δt as printed  (kg m/s).
 pub fn integrate_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64, reading: StepEight) {
     let share = match reading {
         StepEight::SecondOrder => NEWMARK_GAMMA,
@@ -163,7 +163,7 @@ pub fn integrate_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64, reading:
 // ANCHOR_END: integrate_momentum
 
 // ANCHOR: correct
-/// Step 9, corrector (29): v_p += γ Δt Σ_I f_I N_Ip / m_I, all at k+1  [m/s].
+/// Step 9, corrector (29): v_p += γ Δt Σ_I f_I N_Ip / m_I, all at k+1  (m/s).
 pub fn correct<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
