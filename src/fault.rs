@@ -5,6 +5,7 @@
 //! breaks down ([`Breakdown`]) ends with 1 and leaves its history under a name
 //! that says so.
 
+use crate::basis::lme::Failure;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -37,15 +38,17 @@ pub enum Breakdown {
     )]
     LeftGrid { particle: usize, moment: Moment, position: Vec<f64> },
     #[error(
-        "particle {particle} turned inside out at {moment}: tr Δε = {strain:e} in one step, \
-         and 1 + tr Δε must stay above 0"
+        "the volume of particle {particle} is used up at {moment}: tr Δε = {strain:e} in one \
+         step, and 1 + tr Δε must stay above 0"
     )]
     Inverted { particle: usize, moment: Moment, strain: f64 },
     #[error("the {symbol} of particle {particle} is not a finite number at {moment}")]
     NotFinite { particle: usize, moment: Moment, symbol: &'static str },
+    #[error("local max-ent cannot serve particle {particle} at {moment}: {failure}")]
+    NoBasis { particle: usize, moment: Moment, failure: Failure },
     #[error(
         "the run blew up at {moment}: its energy is {ratio:e} times that of the start, and \
-         particle {particle} holds most of it"
+         particle {particle} holds the largest share"
     )]
     Diverged { particle: usize, moment: Moment, ratio: f64 },
 }
@@ -57,6 +60,7 @@ impl Breakdown {
             Breakdown::LeftGrid { moment, .. }
             | Breakdown::Inverted { moment, .. }
             | Breakdown::NotFinite { moment, .. }
+            | Breakdown::NoBasis { moment, .. }
             | Breakdown::Diverged { moment, .. } => *moment,
         }
     }
@@ -129,6 +133,8 @@ pub enum Fault {
     Write { path: PathBuf, source: std::io::Error },
     #[error("{path}, line {line}: {problem}; allowed: {allowed}")]
     Points { path: String, line: u64, problem: String, allowed: String },
+    #[error("{argument}: {problem}; allowed: {allowed}")]
+    Argument { argument: &'static str, problem: String, allowed: &'static str },
     #[error("no exact solution is known for this scene: {why}")]
     NoExact { why: &'static str },
     #[error("{breakdown}\n{advice}")]

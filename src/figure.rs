@@ -88,7 +88,7 @@ pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
     let frame = Frame {
         title: format!("{}: {}, {} cells", scene.title, probe.name, cells.join(" × ")),
         x_label: format!("time t [{t_prefix}s]"),
-        y_label: format!("{name} at x = {} m [{y_prefix}{unit}]", at.join(", ")),
+        y_label: format!("{name} nearest to {} m [{y_prefix}{unit}]", at.join(", ")),
         log: false,
     };
     draw(curves, frame)
@@ -178,7 +178,7 @@ fn largest(list: &[f64]) -> f64 {
 
 /// The SI prefix that brings `largest` between 1 and 1000, and its factor.
 fn prefix(largest: f64) -> (f64, &'static str) {
-    const PREFIXES: [(f64, &str); 8] = [
+    const PREFIXES: [(f64, &str); 10] = [
         (1e-12, "T"),
         (1e-9, "G"),
         (1e-6, "M"),
@@ -187,13 +187,20 @@ fn prefix(largest: f64) -> (f64, &'static str) {
         (1e3, "m"),
         (1e6, "µ"),
         (1e9, "n"),
+        (1e12, "p"),
+        (1e15, "f"),
     ];
     let fits = |(factor, _): &&(f64, &str)| largest * factor >= 1.0;
     PREFIXES.iter().find(fits).copied().unwrap_or((1.0, ""))
 }
 
-/// A tick label: up to six digits, no trailing zeros.
+/// A tick label: up to six decimals, no trailing zeros; a power of ten where
+/// that would show nothing.
 fn tick(x: f64) -> String {
+    let size = libm::fabs(x);
+    if x != 0.0 && !(1e-4..1e7).contains(&size) {
+        return format!("{x:.1e}").replace(".0e", "e");
+    }
     let rounded = format!("{x:.6}");
     let short = rounded.trim_end_matches('0').trim_end_matches('.');
     if short == "-0" { "0".to_string() } else { short.to_string() }

@@ -1,4 +1,4 @@
-//! The background grid: the only place that enumerates space dimensions.
+//! The background grid: where nodes stand, and which cell holds a point.
 #![allow(non_snake_case)]
 
 use nalgebra::SVector;
@@ -40,9 +40,6 @@ impl<const D: usize> Grid<D> {
         }
     }
 
-    /// 2^D, the number of corners of a cell.
-    pub const CORNERS: usize = 1 << D;
-
     /// N_n, the number of nodes.
     pub fn nodes(&self) -> usize {
         self.cells.iter().map(|cells| cells + 1).product()
@@ -61,7 +58,7 @@ impl<const D: usize> Grid<D> {
     /// x_I (m).
     pub fn position(&self, I: usize) -> SVector<f64, D> {
         let i = self.index(I);
-        SVector::from_fn(|d, _| (i[d] as f64 - self.before[d] as f64) * self.h[d])
+        SVector::from_fn(|d, _| self.coordinate(d, i[d] as f64))
     }
 
     /// I of the node with index `i` along each axis; the first axis runs fastest.
@@ -73,31 +70,56 @@ impl<const D: usize> Grid<D> {
         I
     }
 
-    /// The corner with number `corner` < 2^D of a cell: bit d says which end
-    /// along axis d.
-    pub fn corner(corner: usize) -> [usize; D] {
-        std::array::from_fn(|d| corner >> d & 1)
+    /// The nodes whose distance from a point along each axis is at most `radius`
+    /// cells, and the corners of its cell; the first axis runs fastest.
+    pub fn around(&self, at: &Located<D>, radius: f64) -> impl Iterator<Item = [usize; D]> {
+        let (mut low, mut count) = ([0; D], [0; D]);
+        for d in 0..D {
+            let (cell, last) = (at.cell[d] as f64, self.cells[d] as f64);
+            let lowest = libm::ceil(cell + at.xi[d] - radius).min(cell).max(0.0);
+            let highest = libm::floor(cell + at.xi[d] + radius).max(cell + 1.0).min(last);
+            (low[d], count[d]) = (lowest as usize, (highest - lowest) as usize + 1);
+        }
+        (0..count.iter().product()).map(move |n| {
+            let mut rest = n;
+            std::array::from_fn(|d| {
+                let i = low[d] + rest % count[d];
+                rest /= count[d];
+                i
+            })
+        })
+    }
+
+    /// The coordinate along axis d of the nodes with index i (m).
+    fn coordinate(&self, d: usize, i: f64) -> f64 {
+        (i - self.before[d] as f64) * self.h[d]
     }
 
     /// The cell that holds `x` (m); `None` outside the grid or for NaN.
     ///
     /// A point on a face belongs to the cell above it, except on the grid's
-    /// own upper face.
+    /// own upper face. ξ is measured from the node as a number, so that a point
+    /// with a node's coordinate has exactly ξ = 0.
     pub fn locate(&self, x: &SVector<f64, D>) -> Option<Located<D>> {
         let mut cell = [0; D];
         let mut xi = SVector::zeros();
         for d in 0..D {
-            let s = x[d] / self.h[d];
-            let below = libm::floor(s);
-            let i = below + self.before[d] as f64;
-            let cells = self.cells[d] as f64;
-            if (0.0..cells).contains(&i) {
-                (cell[d], xi[d]) = (i as usize, s - below);
-            } else if i >= cells && x[d] <= self.upper[d] {
-                (cell[d], xi[d]) = (self.cells[d] - 1, 1.0);
-            } else {
+            let (cells, lowest) = (self.cells[d] as f64, self.coordinate(d, 0.0));
+            if !(lowest <= x[d] && x[d] <= self.upper[d]) {
                 return None;
             }
+            let i = libm::floor(x[d] / self.h[d]) + self.before[d] as f64;
+            // The quotient may be rounded across a node.
+            let i = match i {
+                i if x[d] < self.coordinate(d, i) => i - 1.0,
+                i if x[d] >= self.coordinate(d, i + 1.0) => i + 1.0,
+                i => i,
+            };
+            let i = i.clamp(0.0, cells - 1.0);
+            cell[d] = i as usize;
+            let on_top = x[d] >= self.coordinate(d, i + 1.0);
+            let within = (x[d] - self.coordinate(d, i)) / self.h[d];
+            xi[d] = if on_top { 1.0 } else { within.min(1.0) };
         }
         Some(Located { cell, xi })
     }

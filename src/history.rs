@@ -1,4 +1,4 @@
-//! What a run writes: tables of numbers as CSV, all files at once or none.
+//! What a run writes: tables of numbers as CSV, each file complete or not there.
 
 use crate::fault::Fault;
 use std::fs;
@@ -62,26 +62,29 @@ pub fn shortest(x: f64) -> String {
 }
 
 /// Writes all `files` into `dir`, each complete or not at all, and removes the
-/// `stale` ones of an earlier run, so that a directory never mixes two runs.
+/// `stale` ones of an earlier run, so that a directory does not mix two runs.
 ///
 /// Errors: [`Fault::Write`] with the path.
 pub fn write_all(dir: &Path, files: &[(String, Vec<u8>)], stale: &[String]) -> Result<(), Fault> {
     let fault = |path: &Path, source| Fault::Write { path: path.to_path_buf(), source };
     let temporary = |name: &str| dir.join(format!(".{name}.part"));
-    for (name, bytes) in files {
-        let path = temporary(name);
-        if let Err(source) = fs::write(&path, bytes) {
-            for (name, _) in files {
-                // Best effort: the error that matters is the one above.
-                fs::remove_file(temporary(name)).ok();
-            }
-            return Err(fault(&path, source));
+    let write = || -> Result<(), Fault> {
+        for (name, bytes) in files {
+            let path = temporary(name);
+            fs::write(&path, bytes).map_err(|source| fault(&path, source))?;
         }
-    }
-    for (name, _) in files {
-        let path = dir.join(name);
-        fs::rename(temporary(name), &path).map_err(|source| fault(&path, source))?;
-    }
+        for (name, _) in files {
+            let path = dir.join(name);
+            fs::rename(temporary(name), &path).map_err(|source| fault(&path, source))?;
+        }
+        Ok(())
+    };
+    write().inspect_err(|_| {
+        for (name, _) in files {
+            // Best effort: the error that matters is the one that led here.
+            fs::remove_file(temporary(name)).ok();
+        }
+    })?;
     for name in stale.iter().filter(|name| !files.iter().any(|(written, _)| written == *name)) {
         let path = dir.join(name);
         if path.exists() {

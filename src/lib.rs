@@ -11,16 +11,16 @@
 //! | paper | module | tests |
 //! |---|---|---|
 //! | §3.1, (2) (3) (17) | [`continuum::law`] | `tests/laws.rs` |
-//! | §3.3, (12)-(16) (18) (19) | [`continuum::sums`], [`continuum::shape`] | `tests/laws.rs` |
+//! | §3.3, (13) (14) (16) (18) (19) | [`continuum::sums`], [`continuum::shape`] | `tests/laws.rs` |
 //! | §3.3, N_I and its table | [`basis`], [`grid`] | `tests/laws.rs` |
-//! | §4, (27)-(29) and the Algorithm | [`time::newmark`], [`time::steps`] | `tests/convergence.rs`, `tests/regression.rs` |
+//! | §4, (27)-(29) and the Algorithm | [`time::newmark`], [`time::steps`] | `tests/steps.rs`, `tests/convergence.rs`, `tests/regression.rs` |
 //! | §6, (39) | [`measure`] | `tests/analytical.rs` |
 //! | App. A, (40)-(59) | [`exact::riemann`] | `tests/analytical.rs` |
 //! | doubts and misprints | [`reading`] | `tests/convergence.rs` |
 //!
 //! Around the paper stand [`scene`] (what to compute), [`model`] and [`run`]
 //! (the time loop), [`history`], [`summary`], [`figure`]
-//! and [`report`] (what comes out),
+//! and [`report`] (what comes out), [`points`] (values at points),
 //! [`cost`] (what it took) and [`fault`] (what can go wrong).
 
 pub mod basis;
@@ -33,6 +33,7 @@ pub mod grid;
 pub mod history;
 pub mod measure;
 pub mod model;
+pub mod points;
 pub mod reading;
 pub mod report;
 pub mod run;

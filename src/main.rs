@@ -1,10 +1,12 @@
 //! The command line. No numerics here.
 
 use anstream::{eprintln, println};
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lme_mpm::basis::Basis;
 use lme_mpm::fault::Fault;
+use lme_mpm::points::{self, Points};
 use lme_mpm::report;
 use lme_mpm::scene::{DYKA, Scene};
 use lme_mpm::summary::Line;
@@ -67,6 +69,62 @@ enum Command {
         #[arg(long, value_name = "FILE|-")]
         points: PathBuf,
     },
+    /// Evaluate shape functions and their gradients at points
+    ///
+    /// Reads two CSV files with the columns x[,y[,z]] (m) and prints CSV
+    /// point,node,N,dN_dx[,dN_dy[,dN_dz]], points and nodes counted from 0.
+    /// Nodes outside the support are left out. lme takes any set of nodes, the
+    /// others a regular grid.
+    #[command(
+        after_help = "Example:\n  lme-mpm shape --basis lme --spacing 0.1 --gamma 0.8 --nodes nodes.csv --points points.csv"
+    )]
+    Shape(ShapeArguments),
+}
+
+#[derive(Args)]
+struct ShapeArguments {
+    #[arg(long)]
+    basis: BasisName,
+    /// h, the spacing of the nodes (m)
+    #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
+    spacing: f64,
+    /// γ = βh² of lme
+    #[arg(long, value_name = "G", required_if_eq("basis", "lme"), value_parser = positive, allow_negative_numbers = true)]
+    gamma: Option<f64>,
+    /// lme leaves out nodes with exp(−γ|ξ|²) below it; 0 leaves out none
+    #[arg(long, value_name = "TOL", default_value_t = 1e-6, value_parser = fraction, allow_negative_numbers = true)]
+    cutoff: f64,
+    /// Half the length of a particle of ugimp (m), at most H/2
+    #[arg(long, value_name = "LP", required_if_eq("basis", "ugimp"), value_parser = positive, allow_negative_numbers = true)]
+    half_length: Option<f64>,
+    /// The nodes
+    #[arg(long, value_name = "FILE")]
+    nodes: PathBuf,
+    /// The points; - reads standard input
+    #[arg(long, value_name = "FILE|-")]
+    points: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum BasisName {
+    Linear,
+    Ugimp,
+    Lme,
+    Bspline,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
+        _ => Err("a finite number above 0 is allowed".to_string()),
+    }
+}
+
+fn fraction(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if (0.0..1.0).contains(&x) => Ok(x),
+        _ => Err("a number from 0 up to and below 1 is allowed".to_string()),
+    }
 }
 
 fn main() -> ExitCode {
@@ -76,6 +134,7 @@ fn main() -> ExitCode {
             Scene::open(&scene, &set).and_then(|scene| run(&scene, out, quiet))
         }
         Some(Command::Exact { scene, points }) => exact(&scene, &points),
+        Some(Command::Shape(arguments)) => shape(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -143,16 +202,46 @@ fn table(lines: &[Line]) -> Table {
 
 fn exact(scene: &Path, points: &Path) -> Result<(), Fault> {
     let scene = Scene::open(scene, &[])?;
-    let name = points.display().to_string();
-    let input: Box<dyn Read> = match name.as_str() {
-        "-" => Box::new(std::io::stdin()),
-        _ => Box::new(
-            std::fs::File::open(points)
-                .map_err(|source| Fault::Read { path: points.to_path_buf(), source })?,
-        ),
+    let answer = points::exact_at(&scene, &points.display().to_string(), open(points)?)?;
+    print_bytes(&answer)
+}
+
+fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
+    let spacing = arguments.spacing;
+    let half = arguments.half_length.map_or(0.5, |half| half / spacing);
+    if half > 0.5 {
+        return Err(Fault::Argument {
+            argument: "--half-length",
+            problem: format!("{half} of the spacing"),
+            allowed: "at most half of the spacing",
+        });
+    }
+    let basis = match arguments.basis {
+        BasisName::Linear => Basis::Linear,
+        BasisName::Ugimp => Basis::Ugimp { half_length: [half; 3] },
+        BasisName::Bspline => Basis::BSpline,
+        BasisName::Lme => {
+            Basis::Lme { gamma: arguments.gamma.unwrap_or(1.0), cutoff: arguments.cutoff }
+        }
     };
-    let answer = report::exact_at(&scene, &name, input)?;
+    let read =
+        |path: &Path| Points::read(&path.display().to_string(), open(path)?, &points::COORDINATES);
+    let (nodes, points) = (read(&arguments.nodes)?, read(&arguments.points)?);
+    print_bytes(&points::shape_at(&basis, spacing, &nodes, &points)?)
+}
+
+/// A file, or standard input for `-`.
+fn open(path: &Path) -> Result<Box<dyn Read>, Fault> {
+    if path == Path::new("-") {
+        return Ok(Box::new(std::io::stdin()));
+    }
+    let file = std::fs::File::open(path)
+        .map_err(|source| Fault::Read { path: path.to_path_buf(), source })?;
+    Ok(Box::new(file))
+}
+
+fn print_bytes(bytes: &[u8]) -> Result<(), Fault> {
     std::io::stdout()
-        .write_all(&answer)
+        .write_all(bytes)
         .map_err(|source| Fault::Write { path: "standard output".into(), source })
 }

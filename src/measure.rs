@@ -8,7 +8,7 @@ use nalgebra::SVector;
 /// (39) with the square that the paper's print lacks:
 /// RMS = √(1/N Σ (φ − φ̂)²), in the unit of φ; 0 for no pairs.
 ///
-/// Tests: `measure::rms_*` in `tests/analytical.rs`.
+/// Test: `rms_has_its_square` in `tests/analytical.rs`.
 pub fn rms(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
     let (mut sum, mut n) = (0.0, 0.0);
     for (phi, phi_hat) in pairs {

@@ -2,7 +2,7 @@
 //! state at k = 0.
 #![allow(non_snake_case)]
 
-use crate::basis::Basis;
+use crate::basis::{Basis, Scratch};
 use crate::continuum::law::LinearElastic;
 use crate::continuum::shape::Shape;
 use crate::continuum::state::{Nodes, Particles, State};
@@ -44,8 +44,9 @@ impl Scene {
 
     /// N_t: as many equal steps as keep c Δt / h at or below `time.cfl`.
     ///
-    /// A count within 1e-9 of a whole number is that number, so that an end
-    /// given to ten digits does not cost a step.
+    /// A count within 1e-9 (relative) of a whole number is that number, so that
+    /// an end given to ten digits does not cost a step; the Courant number may
+    /// then exceed the bound by as much.
     fn step_count(&self) -> f64 {
         let count = self.time.end * wave_speed(&self.body) / (self.time.cfl * self.spacing());
         let whole = libm::round(count);
@@ -120,7 +121,8 @@ impl<const D: usize> Model<D> {
             }
         }
         let shape = Shape::blank(count);
-        State { particle, node: Nodes::blank(self.grid.nodes()), shape }
+        let node = Nodes::blank(self.grid.nodes());
+        State { particle, node, shape, scratch: Scratch::default() }
     }
 }
 

@@ -8,8 +8,9 @@
 //!   σ at k+1, and (3) needs Δε of step 5.
 //! * **Step 1, (28).** The algorithm writes (1 − γ) Σ f N / m Δt, the text
 //!   writes it with Δt in front. They are the same.
-//! * **Step 2** discards the nodal values; the p_I and m_I that step 1 of the
-//!   next time step needs are those of steps 3 and 8, not discarded ones.
+//! * **Step 2** discards the nodal values, among them the p_I of k that step 8
+//!   as printed adds to. What step 8 adds to here is the momentum that step 3
+//!   has mapped.
 //! * **Step 9** is titled predictor; it is the corrector (29).
 //! * **Start.** The nodal values at k = 0 are not defined by the paper: steps
 //!   2 to 8 run once with Δt = 0.
@@ -26,8 +27,9 @@
 /// Neither reading makes x_p second order without condition. The next step 3
 /// maps the particles' velocity anew, which has grown by Σ_I N a_I Δt, while
 /// (27) moved x_p with a_I itself; a remainder of first order in Δt is left,
-/// Σ_I N_I (a_I − a_p) Δt² per step. It is O(h²) on smooth data, and all of the
-/// error in a single cell.
+/// Σ_I N_Ip (a_I − ā_I) Δt² per step, where ā_I is the particles' acceleration
+/// mapped back to the nodes. It is O(h²) on smooth data with evenly placed
+/// particles, and all of the error in a single cell.
 ///
 /// Tests: `step_eight_*` in `tests/convergence.rs`,
 /// `one_particle_shows_the_remapping_term` in `tests/analytical.rs`.

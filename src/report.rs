@@ -1,7 +1,6 @@
 //! Runs a scene and writes what came out of it: histories, last state,
 //! summary, cost and pictures.
 
-use crate::exact::Exact;
 use crate::fault::{Breakdown, Fault};
 use crate::figure;
 use crate::history::{csv, prepare, shortest, write_all};
@@ -47,16 +46,16 @@ pub fn run_into(
         let picture = figure::probe(scene, probe, &outcome.history);
         files.push((format!("{}.svg", probe.name), picture.into_bytes()));
     }
-    write_all(dir, &files, &[FAILED.to_string()])?;
+    let mut stale = earlier(dir);
+    stale.push(FAILED.to_string());
+    write_all(dir, &files, &stale)?;
     lines.extend(cost);
     Ok(lines)
 }
 
 /// Leaves the history up to the breakdown, and names what to try.
 fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
-    let mut stale: Vec<String> = FILES.map(String::from).to_vec();
-    stale.extend(scene.probes.iter().map(|probe| format!("{}.svg", probe.name)));
-    write_all(dir, &[(FAILED.to_string(), stopped.history.csv()?)], &stale)?;
+    write_all(dir, &[(FAILED.to_string(), stopped.history.csv()?)], &earlier(dir))?;
     let courant = scene.courant_number();
     let hint = match stopped.breakdown {
         Breakdown::LeftGrid { .. } if courant <= 1.0 => String::new(),
@@ -69,60 +68,20 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
     })
 }
 
+/// The files that an earlier complete run has left in `dir`: those of every
+/// run, and a picture for each column of its history.
+fn earlier(dir: &Path) -> Vec<String> {
+    let mut files: Vec<String> = FILES.map(String::from).to_vec();
+    let history = std::fs::read_to_string(dir.join(FILES[0])).unwrap_or_default();
+    let columns = history.lines().next().unwrap_or("").split(',');
+    let plain = |name: &&str| name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    files.extend(columns.filter(plain).map(|name| format!("{name}.svg")));
+    files
+}
+
 /// `quantity,value,unit`.
 fn lines_csv(lines: &[Line]) -> Result<Vec<u8>, Fault> {
     let row =
         |line: &Line| vec![line.quantity.clone(), shortest(line.value), line.unit.to_string()];
     csv(&["quantity", "value", "unit"], lines.iter().map(row))
-}
-
-/// Reads points `x,t` and gives `x,t,velocity,stress,displacement` of the
-/// scene's exact solution; x in the scene's coordinates, at t = 0.
-///
-/// Errors: [`Fault::NoExact`]; [`Fault::Points`] with the line of the first
-/// point that is not a number, outside the body, or before t = 0.
-pub fn exact_at(scene: &Scene, name: &str, points: impl std::io::Read) -> Result<Vec<u8>, Fault> {
-    let exact = Exact::of(scene)?;
-    let (origin, length) = (scene.body.origin[0], scene.body.length[0]);
-    let fault = |line: u64, problem: String, allowed: String| Fault::Points {
-        path: name.to_string(),
-        line,
-        problem,
-        allowed,
-    };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(points);
-    let header = "a header line with the columns x and t".to_string();
-    let names = reader.headers().map_err(|error| fault(1, error.to_string(), header.clone()))?;
-    let column = |wanted: &str| names.iter().position(|name| name == wanted);
-    let (Some(x_at), Some(t_at)) = (column("x"), column("t")) else {
-        let found: Vec<&str> = names.iter().collect();
-        return Err(fault(1, format!("the columns are `{}`", found.join(",")), header));
-    };
-    let mut rows = Vec::new();
-    for record in reader.into_records() {
-        let record = record.map_err(|error| {
-            let line = error.position().map_or(0, csv::Position::line);
-            fault(line, error.to_string(), "two numbers in each line".to_string())
-        })?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let number = |at: usize, what: &str, low: f64, high: f64| {
-            let text = record.get(at).unwrap_or("");
-            match text.parse::<f64>() {
-                Ok(x) if low <= x && x <= high && x.is_finite() => Ok(x),
-                _ => Err(fault(
-                    line,
-                    format!("`{text}` is not a value of {what}"),
-                    format!("a finite number from {} to {}", shortest(low), shortest(high)),
-                )),
-            }
-        };
-        let x = number(x_at, "x", origin, origin + length)?;
-        let t = number(t_at, "t", 0.0, f64::INFINITY)?;
-        // At the body's own upper corner, to the last bit, as in a scene.
-        let from_corner = if x == origin + length { length } else { x - origin };
-        let fields = exact.at(from_corner, t);
-        let values = [x, t, fields.velocity, fields.stress, fields.displacement];
-        rows.push(values.map(shortest).to_vec());
-    }
-    csv(&["x", "t", "velocity", "stress", "displacement"], rows.into_iter())
 }

@@ -60,6 +60,17 @@ fn riemann_eigenstructure() {
     }
 }
 
+/// Bars with values so large that c t cannot be resolved are refused by time.
+#[test]
+fn riemann_far_times_stay_bounded() {
+    let bar = dyka_bar();
+    for share in [1.0, 0.7, 1e-3, 1e-9] {
+        let fields = bar.at(0.3 * L, share * bar.latest());
+        assert!(fields.velocity.abs() <= 5.0 && fields.stress.abs() <= 2e8);
+        assert!(fields.displacement.abs() <= 5.0 * L / bar.c());
+    }
+}
+
 /// (57)-(59): R^I = (v − σ/Z)/2, R^II = (v + σ/Z)/2, v = R^I + R^II,
 /// σ = Z (R^II − R^I), with numbers.
 #[test]
@@ -120,8 +131,8 @@ fn riemann_dyka_histories() {
         let end = bar.at(L, tau * transit());
         assert_eq!(end.velocity, expected, "ct/L = {tau}");
         assert_eq!(end.stress, 0.0, "the free end, ct/L = {tau}");
-        // The compression sent left by the patch is back, as tension at a
-        // fixed end, after 1.5 L; the free end returns the other wave.
+        // The tension that the patch sends left comes back from the fixed end
+        // as tension, after 1.5 L; the other wave the free end turns round.
         let sign = match tau {
             tau if tau < 0.5 || (tau > 1.5 && tau < 2.0) => 1.0,
             tau if (tau > 2.0 && tau < 2.5) || tau > 3.5 => -1.0,
@@ -218,7 +229,8 @@ const V0: f64 = 1e-7;
 /// and x = x0 exp(v0/(Lω) sin ωt), ω² = E/(ρL²) = 1. (The density update
 /// changes V_p by a relative v0/(Lω), here 1e-7.)
 ///
-/// The velocity is of second order: its phase runs ahead by (ωΔt)²/24 · ωt.
+/// The velocity is of second order: its phase runs ahead by (ωΔt)²/24 · ωt, so
+/// its error is that times sin ωt, largest at the end, t = 20.
 #[test]
 fn one_particle_in_one_cell() {
     for cfl in [0.04, 0.02, 0.01] {
@@ -226,19 +238,16 @@ fn one_particle_in_one_cell() {
             .into_iter()
             .map(|(t, v, _)| (v - V0 * t.cos()).abs() / V0)
             .fold(0.0, f64::max);
-        // The velocity is close to largest error at ωt = 6π: the phase error
-        // there times |sin| ≤ 1.
-        let bound = cfl * cfl / 24.0 * 20.0;
-        assert!(worst < 1.01 * bound, "cfl {cfl}: {worst:e} above {bound:e}");
-        assert!(worst > 0.9 * bound, "cfl {cfl}: {worst:e} far below {bound:e}");
+        let expected = cfl * cfl / 24.0 * 20.0 * f64::sin(20.0);
+        assert_relative_eq!(worst, expected, max_relative = 0.02);
     }
 }
 
-/// The displacement of the Algorithm is of first order here, with either
-/// reading of step 8. The next time step maps v_p = Σ_I N a_I Δt anew, while
-/// (27) has moved the particle with a_I itself: an excess of
-/// Δt² Σ_I N_I (a_I − a_p) per step. With one particle that is (1 − N) a_p, and
-/// sums up to Δt (1 − N)(v − v0). On smooth data a_I and a_p differ by O(h²).
+/// The displacement of the Algorithm is of first order here. The next time step
+/// maps v_p = Σ_I N a_I Δt anew, while (27) has moved the particle with a_I
+/// itself: an excess of Δt² Σ_I N_I (a_I − ā_I) per step, ā_I the particles'
+/// acceleration mapped back. With one particle and a fixed left node that is
+/// Δt² (1 − N) a_p, and sums up to Δt (1 − N)(v − v0).
 #[test]
 fn one_particle_shows_the_remapping_term() {
     let (x0, n) = (0.5, 0.5);
@@ -255,8 +264,10 @@ fn one_particle_shows_the_remapping_term() {
     }
 }
 
-/// The bar: errors of both probes and of the displacement field against the
-/// exact solution, within 2% of approved figures.
+/// The bar against its exact solution: within 2% of the figures of an
+/// independent prototype where there are some, .164 (velocity, 40 cells), .113
+/// and .182 (velocity and stress, 160 cells); its energy, which the scheme does
+/// not keep exactly, within half a percent.
 #[test]
 fn dyka_errors() {
     for (cells, rv, rs, ru) in [(40, 0.1643, 0.2649, 0.02781), (160, 0.1131, 0.1836, 0.007165)] {
@@ -267,7 +278,7 @@ fn dyka_errors() {
         assert_relative_eq!(value("velocity_end_rms_relative"), rv, max_relative = 0.02);
         assert_relative_eq!(value("stress_three_quarter_rms_relative"), rs, max_relative = 0.02);
         assert_relative_eq!(value("displacement_field_rms_relative"), ru, max_relative = 0.02);
-        assert!(value("energy_drift_largest") < 3e-3);
+        assert!(value("energy_drift_largest") < 5e-3);
     }
 }
 

@@ -60,11 +60,13 @@ fn step_eight_orders_of_both_readings() {
 }
 
 /// On the bar's jumps v and σ converge like h^(1/3): a second-order scheme
-/// smears a front over h^(2/3), and the RMS is the root of that. u is one
-/// order smoother and converges like h.
+/// disperses a front over h^(2/3), and the RMS is the root of that. The error of
+/// u, an integral, is of the size h^(2/3) there, which gives h. (A first-order
+/// scheme would give v the order 1/4. Grids below 80 cells are not yet in the
+/// asymptotic range.)
 #[test]
 fn dyka_order_in_space() {
-    let cells = [40, 80, 160, 320];
+    let cells = [80, 160, 320, 640];
     let h: Vec<f64> = cells.iter().map(|n| 1.0 / *n as f64).collect();
     let mut errors = vec![Vec::new(); 3];
     for n in cells {
@@ -80,7 +82,7 @@ fn dyka_order_in_space() {
         }
     }
     let [v, stress, u] = [0, 1, 2].map(|i| slope(&h, &errors[i]));
-    assert!((v - 1.0 / 3.0).abs() < 0.1, "velocity: order {v}");
-    assert!((stress - 1.0 / 3.0).abs() < 0.1, "stress: order {stress}");
-    assert!((u - 1.0).abs() < 0.1, "displacement: order {u}");
+    assert!((v - 1.0 / 3.0).abs() < 0.05, "velocity: order {v}");
+    assert!((stress - 1.0 / 3.0).abs() < 0.05, "stress: order {stress}");
+    assert!((u - 1.0).abs() < 0.05, "displacement: order {u}");
 }

@@ -63,6 +63,68 @@ fn dyka_linear_newmark() {
     pin_both_probes(&dyka(&[]), "dyka__linear__newmark");
 }
 
+/// Every other basis with the same scheme. The accuracy test beside these pins
+/// is `dyka_errors_of_every_basis` below.
+#[test]
+fn dyka_newmark_of_every_basis() {
+    for (name, sets) in BASES.iter().skip(1) {
+        pin_both_probes(&dyka(sets), &format!("dyka__{name}__newmark"));
+    }
+}
+
+/// The bases of the bar, with their names in snapshots and tables.
+const BASES: [(&str, &[&str]); 6] = [
+    ("linear", &[]),
+    ("ugimp", &["basis.kind=ugimp"]),
+    ("bspline", &["basis.kind=bspline"]),
+    ("lme_0.8", &["basis.kind=lme", "basis.gamma=0.8"]),
+    ("lme_1.8", &["basis.kind=lme", "basis.gamma=1.8"]),
+    ("lme_4", &["basis.kind=lme", "basis.gamma=4"]),
+];
+
+/// Errors of the bar by basis, with energy and cost beside them. Whatever the
+/// basis, the errors stay below those of a run that is merely stable, v ≤ 0.25
+/// and σ ≤ 0.4, and they fall with the grid.
+#[test]
+fn dyka_errors_of_every_basis() {
+    let mut text = String::from(
+        "basis,velocity at L,stress at 3L/4,displacement field,largest energy drift,\
+         pairs per particle,exponentials per particle and step\n",
+    );
+    for (name, sets) in BASES {
+        let value = |scene: &Scene, outcome: &Outcome, name: &str| {
+            let lines = summary::lines(scene, outcome, 0.0);
+            lines.iter().find(|line| line.quantity == name).unwrap().value
+        };
+        let scene = dyka(sets);
+        let outcome = finished(&scene);
+        let fine = dyka(&[sets, &["grid.cells=160"]].concat());
+        let fine_outcome = finished(&fine);
+        write!(text, "{}", name.replace("lme_", "lme γ = ")).unwrap();
+        let bounds =
+            [("velocity_end", 0.25), ("stress_three_quarter", 0.4), ("displacement_field", 0.1)];
+        for (probe, bound) in bounds {
+            let name = format!("{probe}_rms_relative");
+            let error = value(&scene, &outcome, &name);
+            let error_fine = value(&fine, &fine_outcome, &name);
+            assert!(error < bound && error_fine < 0.85 * error, "{name}: {error}, {error_fine}");
+            write!(text, ",{error:.4}").unwrap();
+        }
+        let drift = value(&scene, &outcome, "energy_drift_largest");
+        assert!(drift < 0.02, "{name}: {drift}");
+        let cost = outcome.cost;
+        let per_point = |count: u64| count as f64 / cost.basis_evaluations as f64;
+        writeln!(
+            text,
+            ",{drift:.5},{:.2},{:.2}",
+            per_point(cost.particle_node_pairs),
+            per_point(cost.exponentials)
+        )
+        .unwrap();
+    }
+    approve("dyka__errors_by_basis", &text);
+}
+
 #[test]
 fn dyka_linear_newmark_as_printed() {
     let scene = dyka(&["time.reading=as-printed"]);

@@ -9,7 +9,7 @@
 //! | 2 | 1.5 | 8 | −2 | −4 | 1, 2 | 0.5, 0.5 |
 
 use approx::assert_relative_eq;
-use lme_mpm::basis::{Basis, tabulate};
+use lme_mpm::basis::{Basis, Scratch, tabulate};
 use lme_mpm::continuum::law::LinearElastic;
 use lme_mpm::continuum::shape::Shape;
 use lme_mpm::continuum::state::{Nodes, Particles};
@@ -37,7 +37,15 @@ fn setup() -> (Particles<1>, Nodes<1>, Shape<1>) {
     particle.sigma = [8.0, 16.0, -4.0].map(Vector1::new).to_vec();
     let mut shape = Shape::blank(3);
     let grid = Grid::over([2.0], [2], [[0, 0]]);
-    tabulate(&mut shape, &mut Cost::default(), &Basis::Linear, &grid, &particle.x).unwrap();
+    tabulate(
+        &mut shape,
+        &mut Scratch::default(),
+        &mut Cost::default(),
+        &Basis::Linear,
+        &grid,
+        &particle.x,
+    )
+    .unwrap();
     (particle, Nodes::blank(3), shape)
 }
 

@@ -62,7 +62,7 @@ impl LinearElastic {
 // ANCHOR: density
 /// (17) over one step: ρ ← ρ / (1 + tr Δε)  (kg/m³).
 ///
-/// `None` when 1 + tr Δε ≤ 0: the step would turn the material inside out.
+/// `None` when 1 + tr Δε ≤ 0: nothing would be left of the volume.
 pub fn density<const D: usize>(rho: f64, d_eps: &SMatrix<f64, D, D>) -> Option<f64> {
     let stretch = 1.0 + d_eps.trace();
     (stretch > 0.0).then(|| rho / stretch)

@@ -5,6 +5,7 @@
 //! body's lower corner, so moving a scene in space changes no digit.
 
 use super::shape::Shape;
+use crate::basis::Scratch;
 use nalgebra::{SMatrix, SVector};
 
 // ANCHOR: particles
@@ -47,6 +48,8 @@ pub struct State<const D: usize> {
     pub particle: Particles<D>,
     pub node: Nodes<D>,
     pub shape: Shape<D>,
+    /// What the basis keeps for its next table.
+    pub scratch: Scratch<D>,
 }
 
 impl<const D: usize> Particles<D> {

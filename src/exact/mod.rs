@@ -49,6 +49,13 @@ impl Exact {
         }))
     }
 
+    /// The latest time (s) at which the solution is right to the last digits.
+    pub fn latest(&self) -> f64 {
+        match self {
+            Exact::Bar(bar) => bar.latest(),
+        }
+    }
+
     /// v, σ and u of the material point that stood at `x` (m) from the body's
     /// lower corner at t = 0, at time `t` >= 0 (s).
     pub fn at(&self, x: f64, t: f64) -> Fields {

@@ -40,8 +40,7 @@ pub struct Patch {
 
 /// An elastic bar on 0 ≤ x ≤ L, free of stress at t = 0.
 ///
-/// On the edge of a patch, and at a front, the value is that of the right-hand
-/// side of x; at x = L it is that of the left-hand side.
+/// On a front, where v and σ jump, the value is that of one of the two sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
     /// L (m).
@@ -137,8 +136,8 @@ impl Bar {
     /// c t as n periods of 4L and a rest in [0, 4L): (n, rest (m)).
     ///
     /// 4L is a period of every pair of ends. c and the product c t are carried
-    /// with twice the digits, so the rest is right to the last bits after any
-    /// number of reflections.
+    /// with twice the digits, so the rest is right to the last bits for any
+    /// number of reflections up to [`Bar::latest`].
     fn travel(&self, t: f64) -> (f64, f64) {
         let period = 4.0 * self.length;
         // c = c + c_low: the remainders of the division and of the root.
@@ -154,8 +153,15 @@ impl Bar {
         let periods = libm::round((s - rest) / period);
         match rest + s_low {
             below if below < 0.0 => (periods - 1.0, below + period),
+            above if above >= period => (periods + 1.0, above - period),
             rest => (periods, rest),
         }
+    }
+
+    /// 2^50 L/c (s). Later, ct in double-double digits no longer resolves a
+    /// bar's length to the last digits of a number.
+    pub fn latest(&self) -> f64 {
+        libm::exp2(50.0) * self.length / self.c()
     }
     // ANCHOR_END: travel
 
@@ -270,7 +276,8 @@ impl Bar {
         let mut fronts: Vec<f64> =
             sources.iter().flat_map(|x| [fold(x + s), fold(x - s)]).collect();
         fronts.sort_by(f64::total_cmp);
-        fronts.dedup();
+        // Two ways to one front may differ in the last digits.
+        fronts.dedup_by(|next, front| *next - *front <= 1e-14 * L);
         fronts
     }
     // ANCHOR_END: fronts

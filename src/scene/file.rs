@@ -48,6 +48,8 @@ pub struct FileGrid {
 #[derive(Deserialize)]
 pub struct FileBasis {
     pub kind: Spanned<String>,
+    pub gamma: Option<Spanned<f64>>,
+    pub cutoff: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]

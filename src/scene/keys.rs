@@ -19,8 +19,7 @@ const fn may(path: &'static str, allowed: &'static str) -> Key {
 const SIDE: &str =
     "\"fixed\" or \"free\", or one of them for each component, as in { x = \"fixed\" }";
 const COMPONENT: &str = "\"fixed\" or \"free\"";
-const BEYOND: &str =
-    "a whole number of cells from 0 up; without it 0 beyond a fixed side, 1 beyond a free one";
+const BEYOND: &str = "a whole number of cells from 0 up; without it 0 beyond a fixed side, 1 beyond a free one and for uGIMP";
 
 /// All keys, in the order in which a scene is read aloud.
 pub const KEYS: &[Key] = &[
@@ -50,7 +49,12 @@ pub const KEYS: &[Key] = &[
     may("grid.beyond.back", BEYOND),
     may("grid.beyond.front", BEYOND),
     must("basis", "a table"),
-    must("basis.kind", "\"linear\""),
+    must("basis.kind", "\"linear\", \"ugimp\", \"lme\" or \"bspline\""),
+    may("basis.gamma", "for lme: γ = βh², a number from 1e-6 to 1e6"),
+    may(
+        "basis.cutoff",
+        "for lme: exp(−γ|ξ|²) below it is cut off, a number from 0 up to and below 1; 1e-6 without it",
+    ),
     must("time", "a table"),
     must("time.integrator", "\"newmark\""),
     may("time.reading", "\"second-order\" (without it) or \"as-printed\", of step 8"),

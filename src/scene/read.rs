@@ -106,13 +106,11 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
     )?;
     let mass =
         check.choose("mass", file.mass.get_ref(), file.mass.span(), &[("lumped", Mass::Lumped)])?;
-    let kind = &file.basis.kind;
-    let basis =
-        check.choose("basis.kind", kind.get_ref(), kind.span(), &[("linear", Basis::Linear)])?;
     let body = body(&check, &file.body)?;
     let time = time(&check, &file.time)?;
     let boundary = boundary(&check, &file.boundary)?;
-    let grid = grid(&check, &file.grid, &boundary)?;
+    let grid = grid(&check, &file.grid, &boundary, file.basis.kind.get_ref() == "ugimp")?;
+    let basis = basis(&check, &file.basis, &grid)?;
     let initial_velocity = regions(&check, &file.initial_velocity, &body)?;
     let probes = probes(&check, &file.probe, &body)?;
     let every = match &file.output.every {
@@ -184,6 +182,37 @@ fn time(check: &Check, file: &FileTime) -> Result<Time, Box<SceneError>> {
     })
 }
 
+/// What a scene's basis needs; keys that mean nothing to it are refused.
+fn basis(check: &Check, file: &FileBasis, grid: &GridSpec) -> Result<Basis, Box<SceneError>> {
+    let half = |d: usize| grid.particles_per_cell.get(d).map_or(0.5, |n| 0.5 / *n as f64);
+    let lme = Basis::Lme { gamma: f64::NAN, cutoff: 1e-6 };
+    let kinds = [
+        ("linear", Basis::Linear),
+        ("ugimp", Basis::Ugimp { half_length: [half(0), half(1), half(2)] }),
+        ("lme", lme),
+        ("bspline", Basis::BSpline),
+    ];
+    let kind = check.choose("basis.kind", file.kind.get_ref(), file.kind.span(), &kinds)?;
+    let Basis::Lme { mut cutoff, .. } = kind else {
+        for (key, value) in [("basis.gamma", &file.gamma), ("basis.cutoff", &file.cutoff)] {
+            if let Some(value) = value {
+                let problem = format!("it means nothing to the basis \"{}\"", file.kind.get_ref());
+                return Err(check.source.error(key, value.span(), problem));
+            }
+        }
+        return Ok(kind);
+    };
+    let Some(gamma) = &file.gamma else {
+        let problem = "the basis \"lme\" needs this key";
+        return Err(check.source.error("basis.gamma", file.kind.span(), problem));
+    };
+    let gamma = check.number("basis.gamma", gamma, |gamma| (1e-6..=1e6).contains(&gamma))?;
+    if let Some(value) = &file.cutoff {
+        cutoff = check.number("basis.cutoff", value, |tol| (0.0..1.0).contains(&tol))?;
+    }
+    Ok(Basis::Lme { gamma, cutoff })
+}
+
 /// Refuses a side or component that the scene has no axis for.
 fn axis_of(
     check: &Check,
@@ -241,13 +270,15 @@ fn grid(
     check: &Check,
     file: &FileGrid,
     boundary: &[[Side; 2]],
+    ugimp: bool,
 ) -> Result<GridSpec, Box<SceneError>> {
     let cells = check.axes("grid.cells", &file.cells, |_, n| n >= 1)?;
     let per_cell = check
         .axes("grid.particles_per_cell", &file.particles_per_cell, |_, n| (1..=64).contains(&n))?;
-    // A body leaves the grid only through a side that lets it move.
+    // A body leaves the grid only through a side that lets it move, but the
+    // particles of uGIMP reach beyond their centres.
     let mut beyond: Vec<[usize; 2]> = (0..check.dimension)
-        .map(|d| [0, 1].map(|upper| usize::from(!boundary[d][upper].fixed[d])))
+        .map(|d| [0, 1].map(|upper| usize::from(ugimp || !boundary[d][upper].fixed[d])))
         .collect();
     for (name, n) in &file.beyond {
         let key = format!("grid.beyond.{name}");

@@ -14,7 +14,7 @@ use crate::reading::StepEight;
 /// With Δt = 0 and blank nodes it moves nothing and gives the nodal values of
 /// k = 0, which the first predictor needs.
 pub fn step<const D: usize>(
-    State { particle, node, shape }: &mut State<D>,
+    State { particle, node, shape, scratch }: &mut State<D>,
     model: &Model<D>,
     reading: StepEight,
     dt: f64,
@@ -24,7 +24,7 @@ pub fn step<const D: usize>(
     let (law, fixed) = (&model.law, &model.fixed);
     predict(particle, node, shape, dt); //              1: (27) (28)
     discard(node); //                                   2
-    tabulate(shape, particle, model, moment, cost)?; //    N_Ip at k+1
+    tabulate(shape, scratch, particle, model, moment, cost)?; // N_Ip at k+1
     transfer(node, particle, shape); //                 3: (13)
     impose_essential(node, fixed); //                   4
     increment_strain(particle, node, shape, dt); //     5: (16)

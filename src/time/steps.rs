@@ -2,7 +2,7 @@
 //! inputs after, so that a signature reads like its equation.
 #![allow(non_snake_case)]
 
-use crate::basis::{self, Outside};
+use crate::basis::{self, Reason, Scratch, Trouble};
 use crate::continuum::law::{self, LinearElastic};
 use crate::continuum::shape::Shape;
 use crate::continuum::state::{Nodes, Particles};
@@ -47,22 +47,25 @@ pub fn discard<const D: usize>(node: &mut Nodes<D>) {
 // ANCHOR: tabulate_step
 /// Between steps 2 and 3: N_Ip and ∇N_Ip at the particles' new positions.
 ///
-/// Errors: [`Breakdown::LeftGrid`], or [`Breakdown::NotFinite`] for a position
-/// that is not a number.
+/// Errors: [`Breakdown::LeftGrid`]; [`Breakdown::NotFinite`] for a position that
+/// is not a number; [`Breakdown::NoBasis`] where local max-ent has no solution.
 pub fn tabulate<const D: usize>(
     shape: &mut Shape<D>,
+    scratch: &mut Scratch<D>,
     particle: &Particles<D>,
     model: &Model<D>,
     moment: Moment,
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
-    let outcome = basis::tabulate(shape, cost, &model.basis, &model.grid, &particle.x);
-    outcome.map_err(|Outside { particle: p }| {
+    let outcome = basis::tabulate(shape, scratch, cost, &model.basis, &model.grid, &particle.x);
+    outcome.map_err(|Trouble { particle: p, reason }| {
         let position: Vec<f64> = particle.x[p].iter().copied().collect();
-        if position.iter().all(|x| x.is_finite()) {
-            Breakdown::LeftGrid { particle: p, moment, position }
-        } else {
-            Breakdown::NotFinite { particle: p, moment, symbol: "position" }
+        match reason {
+            _ if position.iter().any(|x| !x.is_finite()) => {
+                Breakdown::NotFinite { particle: p, moment, symbol: "position" }
+            }
+            Reason::OutsideGrid => Breakdown::LeftGrid { particle: p, moment, position },
+            Reason::Lme(failure) => Breakdown::NoBasis { particle: p, moment, failure },
         }
     })
 }
