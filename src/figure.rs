@@ -1,9 +1,12 @@
 //! Pictures as SVG: histories of probes, fronts of the exact solution, errors.
 
+use crate::basis::lme::Failure;
+use crate::basis::lme_at;
 use crate::exact::riemann::{Bar, Family};
 use crate::history::Table;
 use crate::scene::{Probe, Scene};
 use kuva::prelude::*;
+use nalgebra::Vector2;
 use std::sync::Arc;
 
 /// Width and height of a picture (px).
@@ -11,7 +14,7 @@ const SIZE: (f64, f64) = (860.0, 420.0);
 
 /// Colour-blind safe (Okabe & Ito 2008); the exact curve stands behind.
 const EXACT: &str = "#999999";
-const COLOURS: [&str; 3] = ["#0072b2", "#d55e00", "#009e73"];
+const COLOURS: [&str; 5] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9"];
 
 /// A curve's points.
 pub type Points = Vec<(f64, f64)>;
@@ -170,6 +173,81 @@ pub fn convergence(title: &str, lists: &[(&str, Points)]) -> String {
         log: true,
     };
     draw(lists.iter().enumerate().map(curve).collect(), frame)
+}
+
+/// Curves with names on plain axes.
+pub fn curves(title: &str, x_label: &str, y_label: &str, lists: &[(String, Points)]) -> String {
+    let curve = |(n, (name, points)): (usize, &(String, Points))| Curve {
+        points: points.clone(),
+        colour: COLOURS[n % COLOURS.len()],
+        width: 2.0,
+        legend: name.clone(),
+    };
+    let frame = Frame {
+        title: title.to_string(),
+        x_label: x_label.to_string(),
+        y_label: y_label.to_string(),
+        log: false,
+    };
+    draw(lists.iter().enumerate().map(curve).collect(), frame)
+}
+
+/// The paper's Fig. 3: local max-ent in 2D for several γ. Above N of the middle
+/// node, below ∂N/∂x, over a square of nodes with the spacing 1.
+///
+/// Errors: [`Failure`], if a point cannot be served.
+pub fn local_max_ent(gammas: &[f64]) -> Result<String, Failure> {
+    const NODES: i32 = 3; // to each side of the middle
+    const PIXELS: usize = 25;
+    let mut nodes = Vec::new();
+    for j in -NODES..=NODES {
+        for i in -NODES..=NODES {
+            nodes.push(Vector2::new(f64::from(i), f64::from(j)));
+        }
+    }
+    let middle = nodes.len() / 2;
+    let (mut plots, mut layouts) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
+    for gamma in gammas {
+        let mut values = [Vec::new(), Vec::new()];
+        for row in 0..PIXELS {
+            let mut line = [Vec::new(), Vec::new()];
+            for column in 0..PIXELS {
+                let at = |n: usize| 2.5 * (2.0 * n as f64 / (PIXELS - 1) as f64 - 1.0);
+                let x = Vector2::new(at(column), -at(row));
+                let (found, _) = lme_at(&nodes, 1.0, *gamma, 1e-6, &x)?;
+                let here = found.iter().find(|value| value.0 == middle);
+                line[0].push(here.map_or(0.0, |value| value.1));
+                line[1].push(here.map_or(0.0, |value| value.2[0]));
+            }
+            for (values, line) in values.iter_mut().zip(line) {
+                values.push(line);
+            }
+        }
+        for (n, (values, name)) in values.into_iter().zip(["N", "h ∂N/∂x"]).enumerate() {
+            let map = if n == 0 { ColorMap::Viridis } else { ColorMap::Inferno };
+            let heatmap = Heatmap::new()
+                .with_data(values)
+                .with_color_map(map)
+                .with_cell_size(1.0)
+                .with_x_range(-2.5, 2.5)
+                .with_y_range(-2.5, 2.5);
+            let plot = Plot::from(heatmap);
+            let layout = Layout::auto_from_plots(std::slice::from_ref(&plot))
+                .with_x_axis_min(-2.5)
+                .with_x_axis_max(2.5)
+                .with_y_axis_min(-2.5)
+                .with_y_axis_max(2.5)
+                .with_title(format!("{name}, γ = {gamma}"))
+                .with_title_size(14);
+            plots[n].push(vec![plot]);
+            layouts[n].push(layout);
+        }
+    }
+    let figure = kuva::render::figure::Figure::new(2, gammas.len())
+        .with_plots(plots.into_iter().flatten().collect())
+        .with_layouts(layouts.into_iter().flatten().collect())
+        .with_cell_size(300.0, 260.0);
+    Ok(kuva::backend::svg::SvgBackend.render_scene(&figure.render()))
 }
 
 fn largest(list: &[f64]) -> f64 {

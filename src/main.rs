@@ -1,6 +1,5 @@
 //! The command line. No numerics here.
 
-use anstream::{eprintln, println};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -139,12 +138,12 @@ fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(fault) => {
-            match &fault {
-                Fault::Scene(error) => {
-                    eprintln!("{}", error.render(&annotate_snippets::Renderer::styled()));
-                }
-                _ => eprintln!("{RED}error{RED:#}: {fault}"),
-            }
+            let message = match &fault {
+                Fault::Scene(error) => error.render(&annotate_snippets::Renderer::styled()),
+                _ => format!("{RED}error{RED:#}: {fault}"),
+            };
+            // If even this cannot be said, the exit code says it.
+            writeln!(anstream::stderr(), "{message}").ok();
             ExitCode::from(fault.exit_code())
         }
     }
@@ -174,9 +173,13 @@ fn run(scene: &Scene, out: Option<PathBuf>, quiet: bool) -> Result<(), Fault> {
     bar.finish_and_clear();
     let lines = lines?;
     if !quiet {
-        println!("{BOLD}{}{BOLD:#}", scene.title);
-        println!("{}", table(&lines));
-        println!("written to {}", dir.display());
+        let text = format!(
+            "{BOLD}{}{BOLD:#}\n{}\nwritten to {}\n",
+            scene.title,
+            table(&lines),
+            dir.display()
+        );
+        print_bytes(text.as_bytes())?;
     }
     Ok(())
 }
@@ -240,8 +243,14 @@ fn open(path: &Path) -> Result<Box<dyn Read>, Fault> {
     Ok(Box::new(file))
 }
 
+/// Prints, without colours unless on a terminal. A reader that has seen enough
+/// and closed the pipe is no error.
 fn print_bytes(bytes: &[u8]) -> Result<(), Fault> {
-    std::io::stdout()
-        .write_all(bytes)
-        .map_err(|source| Fault::Write { path: "standard output".into(), source })
+    let mut out = anstream::stdout();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(source) if source.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Fault::Write { path: "standard output".into(), source })
+        }
+        _ => Ok(()),
+    }
 }

@@ -51,7 +51,7 @@ impl Scene {
         let count = self.time.end * wave_speed(&self.body) / (self.time.cfl * self.spacing());
         let whole = libm::round(count);
         let close = (count - whole).abs() <= 1e-9 * whole;
-        if close { whole } else { libm::ceil(count) }
+        if close && whole > 0.0 { whole } else { libm::ceil(count).max(1.0) }
     }
 
     /// Numbers of particles, nodes and time steps, before anything is built.

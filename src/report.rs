@@ -29,6 +29,7 @@ pub fn run_into(
     progress: &mut dyn FnMut(usize),
 ) -> Result<Vec<Line>, Fault> {
     prepare(dir)?;
+    free_names(dir, scene)?;
     let start = Instant::now();
     let outcome = match run(scene, progress) {
         Ok(outcome) => outcome,
@@ -58,7 +59,8 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
     write_all(dir, &[(FAILED.to_string(), stopped.history.csv()?)], &earlier(dir))?;
     let courant = scene.courant_number();
     let hint = match stopped.breakdown {
-        Breakdown::LeftGrid { .. } if courant <= 1.0 => String::new(),
+        Breakdown::NoBasis { .. } => String::new(),
+        Breakdown::LeftGrid { .. } | Breakdown::NotFinite { .. } if courant <= 1.0 => String::new(),
         _ => format!("the Courant number c Δt / h is {courant:.3}: try a smaller time.cfl; "),
     };
     let left = dir.join(FAILED);
@@ -66,6 +68,19 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
         breakdown: stopped.breakdown,
         advice: format!("{hint}the history up to there is in {}", left.display()),
     })
+}
+
+/// Refuses, before the run, a directory that stands where a file is to be.
+fn free_names(dir: &Path, scene: &Scene) -> Result<(), Fault> {
+    let pictures = scene.probes.iter().map(|probe| format!("{}.svg", probe.name));
+    for name in FILES.map(String::from).into_iter().chain([FAILED.to_string()]).chain(pictures) {
+        let path = dir.join(name);
+        if path.is_dir() {
+            let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
+            return Err(Fault::Write { path, source });
+        }
+    }
+    Ok(())
 }
 
 /// The files that an earlier complete run has left in `dir`: those of every

@@ -158,6 +158,10 @@ impl<const D: usize> Recorder<D> {
     ) -> Result<(), Breakdown> {
         let kinetic = measure::kinetic_energy(particle);
         let strain = measure::strain_energy(particle, &model.law);
+        if !(kinetic + strain).is_finite() {
+            let particle = most_energetic(particle, model);
+            return Err(Breakdown::NotFinite { particle, moment, symbol: "energy" });
+        }
         if moment.step == 0 {
             self.energy = kinetic + strain;
         }

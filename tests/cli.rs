@@ -294,9 +294,18 @@ fn bad_ranges() {
         ("axes", "length = 0.1333", "length = [1, 1, 1, 1]", &["body.length", "1 to 3"]),
         ("lists", "cells = 40", "cells = [40, 4]", &["grid.cells", "1 axis"]),
         ("memory", "cells = 40", "cells = 1000000000", &["grid.cells", "GB of memory"]),
-        ("history", "cfl = 0.5", "cfl = 1e-12", &["time.end", "GB of memory"]),
+        ("history", "cfl = 0.5", "cfl = 1e-8", &["time.end", "GB of memory"]),
         ("name", "\"velocity_end\"", "\"a/b\"", &["probe[0].name", "a/b"]),
-        ("twice", "\"velocity_end\"", "\"stress_three_quarter\"", &["probe[1].name", "twice"]),
+        ("twice", "\"velocity_end\"", "\"stress_three_quarter\"", &["probe[1].name", "taken"]),
+        ("column", "\"velocity_end\"", "\"momentum\"", &["probe[0].name", "taken"]),
+        ("nobody", "to = 0.1333", "to = 0.0999751", &["initial_velocity[0].to", "no particle"]),
+        ("title", "The Dyka", "The\\u0001Dyka", &["title", "control character"]),
+        (
+            "heavy",
+            "density = 7833\nyoungs_modulus = 200e9",
+            "density = 1e300\nyoungs_modulus = 1e-300",
+            &["body.youngs_modulus", "impedance"],
+        ),
         ("side", "left = \"fixed\"", "top = \"fixed\"", &["boundary.top", "1 axis"]),
     ];
     for (name, from, to, words) in cases {
@@ -331,9 +340,15 @@ fn bad_overlapping_regions() {
 fn bad_set() {
     let dir = directory("bad-set");
     let cases = [
-        ("grid.cell=4", &["--set grid.cell=4", "did you mean `cells`?"]),
+        ("grid.cell=4", &["--set grid.cell=4", "did you mean `cells`?"][..]),
         ("grid.cells=0", &["--set grid.cells=0", "from 1 up"]),
         ("grid.cells", &["--set grid.cells", "KEY=VALUE"]),
+        ("", &["--set", "KEY=VALUE"]),
+        ("[grid]", &["KEY=VALUE"]),
+        ("output=[3]", &["--set output=[3]", "a table"]),
+        ("body=3", &["--set body=3", "a table"]),
+        ("probe.0=3", &["--set probe.0=3", "a table"]),
+        ("time.end=1e10", &["--set time.end=1e10", "steps"]),
         ("probe.7.position=0", &["--set probe.7.position=0", "a number from 0 to 1"]),
     ];
     for (set, words) in cases {
@@ -353,6 +368,41 @@ fn bad_files() {
     fs::write(dir.join("binary.toml"), [0xff, 0xfe, 0x00]).unwrap();
     assert_fails(&program(&dir, &["run", "binary.toml"]), 2, &["cannot read binary.toml"]);
     assert_fails(&program(&dir, &["runn"]), 2, &["runn", "run"]);
+}
+
+/// A pipe that closes early is no error, a full disk is.
+#[test]
+fn output_that_cannot_be_written() {
+    let dir = directory("full");
+    let mut command = Command::new("sh");
+    let line = format!("'{}' run '{DYKA}' --out o > /dev/full", env!("CARGO_BIN_EXE_lme-mpm"));
+    let output = command.args(["-c", &line]).current_dir(&dir).output().unwrap();
+    assert_fails(&output, 2, &["cannot write standard output"]);
+    fs::create_dir_all(dir.join("taken/summary.csv")).unwrap();
+    let output = program(&dir, &["run", DYKA, "--out", "taken"]);
+    assert_fails(&output, 2, &["cannot write taken/summary.csv"]);
+    assert_eq!(files(&dir.join("taken")), ["summary.csv"]);
+}
+
+/// A directory does not mix two runs, even of other probes.
+#[test]
+fn run_replaces_an_earlier_run() {
+    let dir = directory("mixed");
+    let run =
+        |sets: &[&str]| program(&dir, &[&["run", DYKA, "--out", "o", "-q"][..], sets].concat());
+    assert!(run(&[]).status.success());
+    assert!(run(&["--set", "probe.0.name=tip"]).status.success());
+    let expected = [
+        "cost.csv",
+        "history.csv",
+        "particles.csv",
+        "stress_three_quarter.svg",
+        "summary.csv",
+        "tip.svg",
+    ];
+    assert_eq!(files(&dir.join("o")), expected);
+    assert_eq!(run(&["--set", "time.cfl=2", "--set", "probe=[]"]).status.code(), Some(1));
+    assert_eq!(files(&dir.join("o")), ["history.failed.csv"]);
 }
 
 #[test]

@@ -1,12 +1,17 @@
-//! Local max-ent against 60-digit references.
+//! Local max-ent against references of 60 digits and more, and how its λ is
+//! found.
 #![allow(non_snake_case)]
+
+mod support;
 
 use lme_mpm::basis::{Basis, Scratch, lme_at, tabulate};
 use lme_mpm::continuum::shape::Shape;
 use lme_mpm::cost::Cost;
+use lme_mpm::figure;
 use lme_mpm::grid::Grid;
 use nalgebra::SVector;
 use std::collections::BTreeMap;
+use support::*;
 
 fn rows(name: &str) -> Vec<Vec<String>> {
     let path = format!("{}/data/reference/{name}", env!("CARGO_MANIFEST_DIR"));
@@ -123,18 +128,124 @@ fn lme_against_60_digits() {
     check::<3>("grid3", &mut table, &reference);
     check::<2>("scattered2", &mut table, &reference);
     check::<3>("scattered3", &mut table, &reference);
+    let mut text = String::from(
+        "domain,nodes,points,N: largest error,h∇N: largest error,N: largest ULP,N: mean ULP\n",
+    );
     for ((domain, kind), e) in &table {
-        println!(
-            "{domain:20} {kind:10} points {:4} N {:.2e} grad {:.2e} ulp max {:8.1} mean {:.2}",
-            e.points,
-            e.N,
-            e.grad,
-            e.ulp,
-            e.ulp_sum / e.values as f64
+        assert!(e.N < 1e-14, "{domain} {kind}: N off by {:e}", e.N);
+        assert!(e.grad < 1e-13, "{domain} {kind}: h∇N off by {:e}", e.grad);
+        let mean = e.ulp_sum / e.values as f64;
+        let points = e.points;
+        text += &format!(
+            "{domain},{kind},{points},{:.1e},{:.1e},{:.0},{mean:.1}\n",
+            e.N, e.grad, e.ulp
         );
     }
-    for ((domain, kind), e) in &table {
-        assert!(e.N < 1e-14, "{domain} {kind} N {:e}", e.N);
-        assert!(e.grad < 1e-13, "{domain} {kind} grad {:e}", e.grad);
+    approve("lme__accuracy", &text);
+}
+
+/// Fig. 3 of the paper, drawn anew.
+#[test]
+fn lme_figure_3() {
+    approve_picture("lme__figure_3", figure::local_max_ent(&[0.8, 1.8, 4.0]).unwrap());
+}
+
+/// Plain Newton steps from λ = 0 at x among the nodes −8 … 8 with the spacing
+/// 1: |r| before each step, for forty steps, or up to the first that is no
+/// number or below 1e-15.
+fn plain_newton(gamma: f64, x: f64) -> Vec<f64> {
+    let (mut lambda, mut residuals) = (0.0, Vec::new());
+    for _ in 0..40 {
+        let xi: Vec<f64> = (-8..=8).map(|I| x - f64::from(I)).collect();
+        let f = xi.iter().map(|xi| -gamma * xi * xi + lambda * xi);
+        let top = f.clone().fold(f64::NEG_INFINITY, f64::max);
+        let w: Vec<f64> = f.map(|f| libm::exp(f - top)).collect();
+        let Z: f64 = w.iter().sum();
+        let r = w.iter().zip(&xi).map(|(w, xi)| w / Z * xi).sum::<f64>();
+        let J = w.iter().zip(&xi).map(|(w, xi)| w / Z * (xi - r) * (xi - r)).sum::<f64>();
+        residuals.push(r.abs());
+        lambda -= r / J;
+        if !lambda.is_finite() || r.abs() < 1e-15 {
+            break;
+        }
     }
+    residuals
+}
+
+/// Plain Newton from λ = 0 fails at more and more places as γ grows; the damped
+/// one with its starting values takes a few steps at any γ and place.
+#[test]
+fn lme_plain_newton_fails() {
+    let places: Vec<f64> = (1..=50).map(|n| 0.01 * f64::from(n) - 0.005).collect();
+    let mut text = String::from(
+        "γ,plain Newton from 0 fails at (of 50 places),most steps of it elsewhere,most steps here\n",
+    );
+    let mut failures = Vec::new();
+    for gamma in [0.8, 1.8, 4.0, 6.0, 8.0, 12.0, 20.0, 100.0, 1000.0] {
+        let (mut fails, mut plain, mut most) = (0, 0, 0);
+        for x in &places {
+            let residuals = plain_newton(gamma, *x);
+            match residuals.last() {
+                Some(r) if *r < 1e-12 => plain = plain.max(residuals.len()),
+                _ => fails += 1,
+            }
+            let end = SVector::<f64, 1>::new(8.0);
+            let grid = Grid { h: SVector::repeat(1.0), cells: [16], before: [8], upper: end };
+            let (mut shape, mut cost) = (Shape::blank(0), Cost::default());
+            let basis = Basis::Lme { gamma, cutoff: 0.0 };
+            let x = [SVector::<f64, 1>::new(*x)];
+            tabulate(&mut shape, &mut Scratch::default(), &mut cost, &basis, &grid, &x).unwrap();
+            most = most.max(cost.newton_iterations);
+        }
+        assert!(most <= 8, "γ = {gamma}: {most}");
+        failures.push(fails);
+        text += &format!("{gamma},{fails},{plain},{most}\n");
+    }
+    assert!(failures.is_sorted(), "{failures:?}");
+    assert!(failures[..3] == [0, 0, 0] && failures[8] > 40, "{failures:?}");
+    approve("lme__newton_steps", &text);
+    let curve = |gamma: f64| {
+        let residuals = plain_newton(gamma, 0.4);
+        let floor = |r: f64| libm::log10(r.max(1e-17));
+        let points = residuals.iter().enumerate().map(|(n, r)| (n as f64, floor(*r)));
+        (format!("γ = {gamma}"), points.take(10).collect())
+    };
+    let lists: Vec<_> = [1.8, 4.0, 8.0, 12.0, 20.0].into_iter().map(curve).collect();
+    let svg = figure::curves("Plain Newton from λ = 0 at x = 0.4", "step", "log10 |r|", &lists);
+    approve_picture("lme__plain_newton", svg);
+}
+
+/// When a node enters the cut-off radius all N jump. The jump is of the order
+/// of the tolerance, and both conditions hold on either side of it, because λ
+/// is solved anew.
+#[test]
+fn lme_jump_at_the_cutoff() {
+    let nodes: Vec<SVector<f64, 1>> =
+        (-20..=20).map(|I| SVector::<f64, 1>::new(f64::from(I))).collect();
+    let mut text = String::from("cut-off,γ = 0.8,γ = 1.8,γ = 4\n");
+    for cutoff in [1e-2, 1e-4, 1e-6, 1e-8] {
+        text += &format!("{cutoff:e}");
+        for gamma in [0.8, 1.8, 4.0] {
+            let radius = libm::sqrt(-libm::log(cutoff) / gamma);
+            let enter = radius.ceil() - radius; // there the node at ceil(R) enters
+            let side = |x: f64| {
+                let x = SVector::<f64, 1>::new(x);
+                let (values, _) = lme_at(&nodes, 1.0, gamma, cutoff, &x).unwrap();
+                let one: f64 = values.iter().map(|v| v.1).sum();
+                let place: f64 = values.iter().map(|v| v.1 * nodes[v.0][0]).sum();
+                assert!((one - 1.0).abs() < 1e-14 && (place - x[0]).abs() < 1e-14);
+                let mut all = vec![0.0; nodes.len()];
+                values.iter().for_each(|v| all[v.0] = v.1);
+                (values.len(), all)
+            };
+            let ((few, before), (many, after)) = (side(enter - 1e-10), side(enter + 1e-10));
+            assert_eq!(few + 1, many, "γ = {gamma}, {cutoff:e}");
+            let jumps = before.iter().zip(&after).map(|(a, b)| (a - b).abs());
+            let jump = jumps.fold(0.0, f64::max);
+            assert!(0.1 * cutoff < jump && jump < 30.0 * cutoff, "{gamma} {cutoff:e} {jump:e}");
+            text += &format!(",{jump:.1e}");
+        }
+        text += "\n";
+    }
+    approve("lme__cutoff_jump", &text);
 }

@@ -179,7 +179,7 @@ impl Definitions {
 /// may a method of the standard library.
 fn names_definition(token: &str, before: &str, after: &str) -> bool {
     const STANDARD: &[&str] =
-        &["clear", "column", "find", "last", "position", "push", "rows", "run"];
+        &["clear", "column", "find", "last", "len", "position", "push", "rows", "run"];
     let type_or_constant = token.len() > 1 && token.starts_with(char::is_uppercase);
     let called = after == "(" || after == "<";
     let foreign = before == "." && STANDARD.contains(&token);

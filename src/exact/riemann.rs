@@ -113,7 +113,7 @@ impl Bar {
 
     /// Z = √(Eρ) = ρc, the impedance (Pa s/m).
     pub fn Z(&self) -> f64 {
-        libm::sqrt(self.modulus * self.density)
+        self.density * self.c()
     }
 
     // ANCHOR: at
@@ -192,7 +192,8 @@ impl Bar {
                 Family::I => (at, ends[0], 0.0),
                 Family::II => (L - at, ends[1], L),
             };
-            done = left <= to_end;
+            // Also for a path that is not a number.
+            done = !(left > to_end);
             let to = match family {
                 _ if !done => wall,
                 Family::I => at - left,

@@ -11,7 +11,7 @@ use toml::Spanned;
 /// The file as written: every value with its place.
 #[derive(Deserialize)]
 pub struct File {
-    pub title: String,
+    pub title: Spanned<String>,
     pub method: Spanned<String>,
     pub mass: Spanned<String>,
     pub body: FileBody,

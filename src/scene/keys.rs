@@ -23,7 +23,7 @@ const BEYOND: &str = "a whole number of cells from 0 up; without it 0 beyond a f
 
 /// All keys, in the order in which a scene is read aloud.
 pub const KEYS: &[Key] = &[
-    must("title", "a text"),
+    must("title", "a text without control characters"),
     must("method", "\"mpm\""),
     must("mass", "\"lumped\""),
     must("body", "a table"),
@@ -93,7 +93,10 @@ pub const KEYS: &[Key] = &[
     must("initial_velocity.to", "the region's upper corner in m, above `from`, inside the body"),
     must("initial_velocity.velocity", "a velocity in m/s, one number for each axis"),
     may("probe", "a list of probes, [[probe]]"),
-    must("probe.name", "a name of letters, digits and _, used once"),
+    must(
+        "probe.name",
+        "a name of at most 64 letters, digits and _, used once, and not that of another column",
+    ),
     must("probe.quantity", "\"velocity\", \"stress\" or \"displacement\""),
     may("probe.component", "in 2D and 3D: x, y, z, for stress two of them as in \"xy\""),
     must(
@@ -103,6 +106,9 @@ pub const KEYS: &[Key] = &[
     may("output", "a table"),
     may("output.every", "a whole number from 1 up: record every so many steps; 1 without it"),
 ];
+
+/// Keys whose value is a list of tables.
+pub const LISTS: &[&str] = &["initial_velocity", "probe"];
 
 /// The key with this path, list indices dropped.
 pub fn find(path: &str) -> Option<&'static Key> {

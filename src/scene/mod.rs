@@ -21,7 +21,7 @@ pub const DYKA: &str = include_str!("../../data/scenes/dyka.toml");
 /// each axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// The file's name without its ending: where the results go.
+    /// The file's name without its ending, or "scene": where the results go.
     pub name: String,
     pub title: String,
     pub method: Method,
@@ -149,7 +149,9 @@ impl Scene {
     pub fn open(path: &Path, sets: &[String]) -> Result<Scene, Fault> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| Fault::Read { path: path.to_path_buf(), source })?;
-        let name = path.file_stem().map_or("scene".into(), |stem| stem.to_string_lossy());
+        let stem = path.file_stem().map_or("".into(), |stem| stem.to_string_lossy());
+        // A name that is no name for a directory of results.
+        let name = if stem.trim_matches('.').is_empty() { "scene".into() } else { stem };
         Ok(Scene::parse(&name, &path.display().to_string(), &text, sets)?)
     }
 

@@ -15,8 +15,25 @@ use toml::Spanned;
 const AXES: [(&str, [&str; 2]); 3] =
     [("x", ["left", "right"]), ("y", ["bottom", "top"]), ("z", ["back", "front"])];
 
+/// Names that columns and files of a run have already.
+const TAKEN: [&str; 10] = [
+    "step",
+    "t",
+    "kinetic_energy",
+    "strain_energy",
+    "momentum",
+    "momentum_x",
+    "momentum_y",
+    "momentum_z",
+    "displacement_field",
+    "energy",
+];
+
 /// The most memory that a scene may ask for (bytes).
 const MEMORY: f64 = 16.0 * 1024.0 * 1024.0 * 1024.0;
+
+/// More steps than any run will finish.
+const MOST_STEPS: f64 = 1e12;
 
 /// Range checks that know where every value was written.
 struct Check<'a> {
@@ -48,9 +65,10 @@ impl Check<'_> {
         let list = &value.get_ref().0;
         if list.len() != self.dimension {
             let problem = format!(
-                "{} given, but the scene has {} (the length of body.length)",
+                "{} given, but the scene has {}, as body.length has {}",
                 counted(list.len(), "number"),
-                counted(self.dimension, "axis")
+                counted(self.dimension, "axis"),
+                counted(self.dimension, "entry")
             );
             return Err(self.source.error(key, value.span(), problem));
         }
@@ -83,6 +101,7 @@ fn counted(n: usize, word: &str) -> String {
     match (n, word) {
         (1, _) => format!("1 {word}"),
         (_, "axis") => format!("{n} axes"),
+        (_, "entry") => format!("{n} entries"),
         _ => format!("{n} {word}s"),
     }
 }
@@ -111,7 +130,7 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
     let boundary = boundary(&check, &file.boundary)?;
     let grid = grid(&check, &file.grid, &boundary, file.basis.kind.get_ref() == "ugimp")?;
     let basis = basis(&check, &file.basis, &grid)?;
-    let initial_velocity = regions(&check, &file.initial_velocity, &body)?;
+    let initial_velocity = regions(&check, &file.initial_velocity, &body, &grid)?;
     let probes = probes(&check, &file.probe, &body)?;
     let every = match &file.output.every {
         None => 1,
@@ -122,9 +141,13 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
         }
     };
 
+    if let Some(bad) = file.title.get_ref().chars().find(|c| c.is_control()) {
+        let problem = format!("it holds the control character {bad:?}");
+        return Err(source.error("title", file.title.span(), problem));
+    }
     let scene = Scene {
         name: name.to_string(),
-        title: file.title,
+        title: file.title.into_inner(),
         method,
         mass,
         body,
@@ -154,11 +177,16 @@ fn body(check: &Check, file: &FileBody) -> Result<Body, Box<SceneError>> {
             .number("body.poisson_ratio", &file.poisson_ratio, |nu| -1.0 < nu && nu < 0.5)?,
     };
     let c = crate::model::wave_speed(&body);
-    if !(c.is_finite() && c > 0.0) {
-        let problem = format!("with body.density it gives the wave speed {c:e} m/s");
+    let impedance = body.density * c;
+    let normal = |x: f64| x.is_normal() && x.recip().is_normal();
+    if !(normal(c) && normal(impedance)) {
+        let problem = format!(
+            "with body.density: the wave speed {c:e} m/s, the impedance {impedance:e} Pa s/m"
+        );
         let mut error =
             check.source.error("body.youngs_modulus", file.youngs_modulus.span(), problem);
-        error.allowed = "moduli whose wave speed √((λ + 2μ)/ρ) is a finite number above 0".into();
+        error.allowed =
+            "moduli whose wave speed √((λ + 2μ)/ρ) and impedance are ordinary numbers".into();
         return Err(error);
     }
     Ok(body)
@@ -300,6 +328,7 @@ fn regions(
     check: &Check,
     file: &[FileRegion],
     body: &Body,
+    grid: &GridSpec,
 ) -> Result<Vec<Region>, Box<SceneError>> {
     let mut regions: Vec<Region> = Vec::new();
     for (n, entry) in file.iter().enumerate() {
@@ -324,6 +353,16 @@ fn regions(
             let problem = format!("this region overlaps initial_velocity[{other}]");
             return Err(check.source.error(&key("from"), entry.from.span(), problem));
         }
+        // Particles stand at equal distances, half of one from the ends.
+        let empty = |d: usize| {
+            let distance = body.length[d] / (grid.cells[d] * grid.particles_per_cell[d]) as f64;
+            let first = libm::ceil(region.from[d] / distance - 0.5).max(0.0);
+            (first + 0.5) * distance >= region.to[d]
+        };
+        if (0..check.dimension).any(empty) {
+            let problem = "no particle lies in this region";
+            return Err(check.source.error(&key("to"), entry.to.span(), problem));
+        }
         regions.push(region);
     }
     Ok(regions)
@@ -334,10 +373,14 @@ fn probes(check: &Check, file: &[FileProbe], body: &Body) -> Result<Vec<Probe>, 
     for (n, entry) in file.iter().enumerate() {
         let key = |name: &str| format!("probe[{n}].{name}");
         let name = entry.name.get_ref();
-        let plain = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-        let used = probes.iter().any(|probe| probe.name == *name);
+        let plain = (1..=64).contains(&name.len())
+            && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        // Files on some systems do not tell upper from lower case.
+        let used = probes.iter().any(|probe| probe.name.eq_ignore_ascii_case(name))
+            || name.ends_with("_exact")
+            || TAKEN.contains(&name.to_ascii_lowercase().as_str());
         if !plain || used {
-            let problem = if used { "is used twice" } else { "cannot name a column and a file" };
+            let problem = if used { "is taken" } else { "cannot name a column and a file" };
             let problem = format!("\"{name}\" {problem}");
             return Err(check.source.error(&key("name"), entry.name.span(), problem));
         }
@@ -402,13 +445,20 @@ fn affordable(
     let pair_bytes = 8.0 * (2.0 + d) * libm::exp2(d);
     let node_bytes = 8.0 * (1.0 + 3.0 * d);
     let rows = steps / scene.every as f64;
-    let row_bytes = 8.0 * (4.0 + d + 2.0 * scene.probes.len() as f64);
+    // A number in the table, as text in CSV, and as a point of a picture.
+    let row_bytes = 60.0 * (4.0 + d + 2.0 * scene.probes.len() as f64);
     let space = particles * (particle_bytes + pair_bytes) + nodes * node_bytes;
     let limit = MEMORY / 1e9;
     if space > MEMORY {
         let problem = format!("this grid needs {:.1} GB of memory", space / 1e9);
         let mut error = check.source.error("grid.cells", grid.cells.span(), problem);
         error.allowed = format!("a grid that needs at most {limit:.1} GB");
+        return Err(error);
+    }
+    if steps > MOST_STEPS {
+        let problem = format!("with time.cfl and grid.cells it asks for {steps:e} steps");
+        let mut error = check.source.error("time.end", time.end.span(), problem);
+        error.allowed = format!("at most {MOST_STEPS:e} steps");
         return Err(error);
     }
     if rows * row_bytes > MEMORY {

@@ -88,6 +88,16 @@ impl Source {
                 }
                 error
             })?;
+            let single = table.get_ref().len() == 1
+                && piece.text.contains('=')
+                && !piece.text.trim_start().starts_with('[')
+                && !piece.text.contains('\n');
+            if merged.is_some() && !single {
+                let span = piece.start..piece.start + piece.text.len();
+                let mut error = self.error("", span, "this is not one KEY=VALUE");
+                error.allowed = "KEY=VALUE, for example grid.cells=80".to_string();
+                return Err(error);
+            }
             match &mut merged {
                 None => merged = Some(table),
                 Some(merged) => self.merge_table(merged.get_mut(), table.into_inner(), "")?,
@@ -180,14 +190,26 @@ impl Source {
                 });
                 return Err(error);
             }
+            let wants_table = keys::children(&without_indices(&path)).next().is_some();
+            let is_list = keys::LISTS.contains(&path.as_str());
             match value.get_ref() {
                 DeValue::Table(inner) => self.known_keys(inner, &path, value.span())?,
-                DeValue::Array(list) => {
+                DeValue::Array(list) if is_list => {
+                    if let Some(entry) = list.iter().find(|entry| !entry.get_ref().is_table()) {
+                        let problem = "each entry must be a table with its keys";
+                        return Err(self.error(&path, entry.span(), problem));
+                    }
                     for (i, entry) in list.iter().enumerate() {
                         if let DeValue::Table(inner) = entry.get_ref() {
                             self.known_keys(inner, &format!("{path}[{i}]"), entry.span())?;
                         }
                     }
+                }
+                // A side of the boundary may be one word for all components.
+                DeValue::String(_) if path.starts_with("boundary.") => {}
+                _ if wants_table => {
+                    let wanted = if is_list { "a list of tables" } else { "a table with keys" };
+                    return Err(self.error(&path, value.span(), format!("this must be {wanted}")));
                 }
                 _ => {}
             }

@@ -111,12 +111,16 @@ pub fn increment_strain<const D: usize>(
 // ANCHOR: update_density
 /// Step 6: ρ_p ← ρ_p / (1 + tr Δε_p)  (kg/m³).
 ///
-/// Errors: [`Breakdown::Inverted`] when 1 + tr Δε_p ≤ 0.
+/// Errors: [`Breakdown::Inverted`] when 1 + tr Δε_p ≤ 0;
+/// [`Breakdown::NotFinite`] when it is not a number.
 pub fn update_density<const D: usize>(
     particle: &mut Particles<D>,
     moment: Moment,
 ) -> Result<(), Breakdown> {
     for p in 0..particle.len() {
+        if !particle.d_eps[p].trace().is_finite() {
+            return Err(Breakdown::NotFinite { particle: p, moment, symbol: "strain" });
+        }
         particle.rho[p] =
             law::density(particle.rho[p], &particle.d_eps[p]).ok_or(Breakdown::Inverted {
                 particle: p,
