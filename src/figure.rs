@@ -37,8 +37,8 @@ struct Frame {
 }
 
 fn draw(curves: Vec<Curve>, frame: Frame) -> String {
-    let last =
-        curves.iter().flat_map(|curve| &curve.points).fold(0.0, |last: f64, p| last.max(p.0));
+    let xs = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.0);
+    let (first, last) = (xs().fold(0.0, f64::min), xs().fold(0.0, f64::max));
     let plots: Vec<Plot> = curves
         .into_iter()
         .map(|curve| {
@@ -61,7 +61,11 @@ fn draw(curves: Vec<Curve>, frame: Frame) -> String {
         .with_label_size(14)
         .with_tick_size(12)
         .with_legend_position(LegendPosition::OutsideRightTop);
-    let layout = if frame.log { layout.with_log_scale() } else { layout.with_x_axis_max(last) };
+    let layout = if frame.log {
+        layout.with_log_scale()
+    } else {
+        layout.with_x_axis_min(first).with_x_axis_max(last)
+    };
     render_to_svg(plots, layout)
 }
 

@@ -56,8 +56,9 @@ pub fn csv(
 }
 
 /// The shortest decimal that reads back as the same number; whole numbers
-/// below 1e15 without a point.
+/// below 1e15 without a point, −0 as 0.
 pub fn shortest(x: f64) -> String {
+    let x = x + 0.0;
     if x == libm::trunc(x) && libm::fabs(x) < 1e15 { format!("{x}") } else { format!("{x:?}") }
 }
 

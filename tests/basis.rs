@@ -5,14 +5,18 @@
 //! same bits. And what a basis does at ends, on nodes, and at extremes.
 #![allow(non_snake_case)]
 
+mod support;
+
 use approx::assert_relative_eq;
 use lme_mpm::basis::lme::Failure;
 use lme_mpm::basis::{Basis, Reason, Scratch, lme_at, tabulate};
 use lme_mpm::continuum::shape::Shape;
 use lme_mpm::cost::Cost;
+use lme_mpm::figure;
 use lme_mpm::grid::Grid;
 use nalgebra::{SMatrix, SVector, Vector1, Vector2, Vector3};
 use proptest::prelude::*;
+use support::*;
 use test_case::test_case;
 
 const UGIMP: Basis = Basis::Ugimp { half_length: [0.25, 0.5, 0.125] };
@@ -235,6 +239,30 @@ fn grid_holds_the_last_point_of_the_body() {
         assert_eq!(at.cell[0], cells - 1);
         assert_relative_eq!(at.xi[0], 1.0, epsilon = 1e-13);
     }
+}
+
+/// One function of each basis, for the book.
+#[test]
+fn basis_figure() {
+    let grid = Grid::<1>::over([8.0], [8], [[0, 0]]);
+    let bases = [
+        ("linear", Basis::Linear),
+        ("uGIMP, l = ¼", UGIMP),
+        ("quadratic B-spline", Basis::BSpline),
+        ("local max-ent, γ = 0.8", lme(0.8)),
+        ("local max-ent, γ = 4", lme(4.0)),
+    ];
+    let curve = |basis: &Basis| {
+        let value = |n: i32| {
+            let xi = f64::from(n) / 40.0;
+            let row = row(basis, &grid, Vector1::new(4.0 + xi));
+            (xi, row.iter().find(|v| v.0 == 4).map_or(0.0, |v| v.1))
+        };
+        (-120..=120).map(value).collect()
+    };
+    let lists: Vec<_> = bases.iter().map(|(name, b)| (name.to_string(), curve(b))).collect();
+    let svg = figure::curves("One function of each basis", "(x − x_I)/h [–]", "N [–]", &lists);
+    approve_picture("basis__shapes", svg);
 }
 
 /// Outside the grid, and for NaN, there is no row but a named particle.
