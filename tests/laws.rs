@@ -421,6 +421,12 @@ fn run_translation_changes_nothing() {
 /// is carried only by the basis that needs it.
 #[test]
 fn run_cost_of_local_max_ent() {
+    for gamma in ["0.8", "1.8", "4"] {
+        let gamma = format!("basis.gamma={gamma}");
+        let cost = finished(&dyka(&["basis.kind=lme", &gamma])).cost;
+        let warm = cost.newton_iterations as f64 / cost.basis_evaluations as f64;
+        assert!(warm < 3.0, "{gamma}: {warm} iterations per particle and step");
+    }
     let cost = finished(&dyka(&["basis.kind=lme", "basis.gamma=0.8"])).cost;
     assert!(cost.newton_iterations >= cost.basis_evaluations);
     assert!(cost.exponentials >= cost.particle_node_pairs);

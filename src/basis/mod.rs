@@ -183,6 +183,9 @@ pub fn lme_at<const D: usize>(
     cutoff: f64,
     x: &SVector<f64, D>,
 ) -> Result<(Vec<(usize, f64, SVector<f64, D>)>, SVector<f64, D>), Failure> {
+    if nodes.iter().chain([x]).any(|place| place.iter().any(|x| !x.is_finite())) {
+        return Err(Failure::NotFinite);
+    }
     let radius = lme::radius(gamma, cutoff);
     let scaled = |from: &SVector<f64, D>, to: &SVector<f64, D>| (from - to) / spacing;
     let square = |I: &usize| {
