@@ -66,7 +66,7 @@ fn draw(curves: Vec<Curve>, frame: Frame) -> String {
     } else {
         layout.with_x_axis_min(first).with_x_axis_max(last)
     };
-    render_to_svg(plots, layout)
+    own_ids(&render_to_svg(plots, layout))
 }
 
 /// The history of one probe, computed and, where known, exact.
@@ -251,7 +251,26 @@ pub fn local_max_ent(gammas: &[f64]) -> Result<String, Failure> {
         .with_plots(plots.into_iter().flatten().collect())
         .with_layouts(layouts.into_iter().flatten().collect())
         .with_cell_size(300.0, 260.0);
-    Ok(kuva::backend::svg::SvgBackend.render_scene(&figure.render()))
+    Ok(own_ids(&kuva::backend::svg::SvgBackend.render_scene(&figure.render())))
+}
+
+/// Numbers the clip paths of a picture from 1. The library numbers them through
+/// all pictures of a process, so that the same picture would differ.
+fn own_ids(svg: &str) -> String {
+    const ID: &str = "kuva-clip-";
+    let mut known: Vec<&str> = Vec::new();
+    let mut pieces = svg.split(ID);
+    let mut out = pieces.next().unwrap_or("").to_string();
+    for piece in pieces {
+        let end = piece.find(|c: char| !c.is_ascii_digit()).unwrap_or(piece.len());
+        let (number, rest) = piece.split_at(end);
+        let at = known.iter().position(|old| *old == number).unwrap_or_else(|| {
+            known.push(number);
+            known.len() - 1
+        });
+        out.push_str(&format!("clip-{}{rest}", at + 1));
+    }
+    out
 }
 
 fn largest(list: &[f64]) -> f64 {

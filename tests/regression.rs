@@ -158,6 +158,16 @@ fn exact_figures() {
     approve_picture("exact__fronts", figure::fronts(&bar, 4.0));
 }
 
+/// The same picture twice in one process is the same text.
+#[test]
+fn figures_are_repeatable() {
+    let scene = dyka(&["grid.cells=4"]);
+    let history = finished(&scene).history;
+    let draw = || figure::probe(&scene, &scene.probes[0], &history);
+    assert_eq!(draw(), draw());
+    assert!(draw().contains("clip-1") && !draw().contains("kuva-clip"));
+}
+
 /// All figures of the bar's summary that do not depend on the machine.
 #[test]
 fn dyka_summary() {
