@@ -1,7 +1,7 @@
 //! Pictures as SVG: histories of probes, fronts of the exact solution, errors.
 
 use crate::basis::lme::Failure;
-use crate::basis::lme_at;
+use crate::basis::support;
 use crate::exact::riemann::{Bar, Family};
 use crate::history::Table;
 use crate::scene::{Probe, Scene};
@@ -218,7 +218,7 @@ pub fn local_max_ent(gammas: &[f64]) -> Result<String, Failure> {
             for column in 0..PIXELS {
                 let at = |n: usize| 2.5 * (2.0 * n as f64 / (PIXELS - 1) as f64 - 1.0);
                 let x = Vector2::new(at(column), -at(row));
-                let (found, _) = lme_at(&nodes, 1.0, *gamma, 1e-6, &x)?;
+                let (found, _) = support::at(&nodes, 1.0, *gamma, 1e-6, &x)?;
                 let here = found.iter().find(|value| value.0 == middle);
                 line[0].push(here.map_or(0.0, |value| value.1));
                 line[1].push(here.map_or(0.0, |value| value.2[0]));

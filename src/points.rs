@@ -1,7 +1,7 @@
 //! CSV of points in, CSV of values out: the commands `exact` and `shape`.
 #![allow(non_snake_case)]
 
-use crate::basis::{self, Basis, Reason, Scratch, lme_at};
+use crate::basis::{self, Basis, Reason, Scratch, Values, support};
 use crate::continuum::shape::Shape;
 use crate::cost::Cost;
 use crate::exact::Exact;
@@ -146,9 +146,6 @@ pub fn shape_at(
     }
 }
 
-/// Node, N and ∇N of one point.
-type Values<const D: usize> = Vec<(usize, f64, SVector<f64, D>)>;
-
 fn shape_in<const D: usize>(
     basis: &Basis,
     spacing: f64,
@@ -163,7 +160,7 @@ fn shape_in<const D: usize>(
     let mut rows = Vec::new();
     for (n, x) in points.vectors::<D>().iter().enumerate() {
         let values = match (basis, &grid) {
-            (Basis::Lme { gamma, cutoff }, _) => lme_at(&place, spacing, *gamma, *cutoff, x)
+            (Basis::Lme { gamma, cutoff }, _) => support::at(&place, spacing, *gamma, *cutoff, x)
                 .map(|(values, _)| values)
                 .map_err(|failure| {
                     let allowed =

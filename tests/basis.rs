@@ -9,7 +9,8 @@ mod support;
 
 use approx::assert_relative_eq;
 use lme_mpm::basis::lme::Failure;
-use lme_mpm::basis::{Basis, Reason, Scratch, lme_at, tabulate};
+use lme_mpm::basis::support::at as lme_at;
+use lme_mpm::basis::{Basis, Reason, Scratch, Values, tabulate};
 use lme_mpm::continuum::shape::Shape;
 use lme_mpm::cost::Cost;
 use lme_mpm::figure;
@@ -50,9 +51,7 @@ fn point<const D: usize>(basis: &Basis, s: [f64; 3]) -> SVector<f64, D> {
     })
 }
 
-type Row<const D: usize> = Vec<(usize, f64, SVector<f64, D>)>;
-
-fn row<const D: usize>(basis: &Basis, grid: &Grid<D>, x: SVector<f64, D>) -> Row<D> {
+fn row<const D: usize>(basis: &Basis, grid: &Grid<D>, x: SVector<f64, D>) -> Values<D> {
     let (mut shape, mut cost) = (Shape::blank(0), Cost::default());
     tabulate(&mut shape, &mut Scratch::default(), &mut cost, basis, grid, &[x])
         .unwrap_or_else(|trouble| panic!("{basis:?} at {x:?}: {trouble:?}"));
@@ -292,7 +291,7 @@ fn lme_becomes_linear() {
     for gamma in [4.0, 8.0, 16.0, 32.0] {
         let linear = row(&Basis::Linear, &grid, x);
         let lme = row(&Basis::Lme { gamma, cutoff: 0.0 }, &grid, x);
-        let value = |row: &Row<2>, I| row.iter().find(|v| v.0 == I).map_or(0.0, |v| v.1);
+        let value = |row: &Values<2>, I| row.iter().find(|v| v.0 == I).map_or(0.0, |v| v.1);
         let error = (0..grid.nodes())
             .map(|I| (value(&lme, I) - value(&linear, I)).abs())
             .fold(0.0, f64::max);
@@ -332,7 +331,7 @@ fn lme_is_a_product_on_a_full_grid() {
     };
     let x = Vector2::new(0.33, 0.77);
     let basis = Basis::Lme { gamma: 1.3, cutoff: 0.0 };
-    let along: Vec<Row<1>> = (0..2).map(|d| row(&basis, &line(d), Vector1::new(x[d]))).collect();
+    let along: Vec<Values<1>> = (0..2).map(|d| row(&basis, &line(d), Vector1::new(x[d]))).collect();
     for (I, N, grad) in row(&basis, &grid, x) {
         let [i, j] = grid.index(I);
         let (a, b) = (along[0][i], along[1][j]);

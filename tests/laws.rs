@@ -4,7 +4,7 @@
 mod support;
 
 use approx::assert_relative_eq;
-use lme_mpm::basis::{Basis, Scratch, tabulate};
+use lme_mpm::basis::{Basis, tabulate};
 use lme_mpm::continuum::law::{LinearElastic, density, symmetric_part};
 use lme_mpm::continuum::shape::Shape;
 use lme_mpm::continuum::state::{Particles, State};

@@ -4,7 +4,8 @@
 
 mod support;
 
-use lme_mpm::basis::{Basis, Scratch, lme_at, tabulate};
+use lme_mpm::basis::support::at as lme_at;
+use lme_mpm::basis::{Basis, Scratch, tabulate};
 use lme_mpm::continuum::shape::Shape;
 use lme_mpm::cost::Cost;
 use lme_mpm::figure;
@@ -96,7 +97,7 @@ fn check<const D: usize>(
         let (point, gamma, h): (usize, f64, f64) =
             (row[0].parse().unwrap(), row[3].parse().unwrap(), row[4].parse().unwrap());
         let x = vector::<D>(&row[5..]);
-        let label = format!("{}", row[2]);
+        let label = row[2].clone();
         let (values, _) = lme_at(&nodes, h, gamma, 0.0, &x).unwrap_or_else(|failure| {
             panic!("point {point} ({set}, {label}, γ = {gamma}): {failure}")
         });

@@ -397,11 +397,3 @@ fn fill_faces<const D: usize>(J: &mut SMatrix<f64, D, D>, faces: &Faces<D>) {
         J[(d, d)] = 1.0;
     }
 }
-
-// ANCHOR: lme_support
-/// The cut-off radius R/h = √(−ln tol/γ): beyond it exp(−γ|ξ|²) < tol. A
-/// tolerance of 0 cuts nothing.
-pub fn radius(gamma: f64, cutoff: f64) -> f64 {
-    libm::sqrt(-libm::log(cutoff) / gamma)
-}
-// ANCHOR_END: lme_support

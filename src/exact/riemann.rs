@@ -193,7 +193,7 @@ impl Bar {
                 Family::II => (L - at, ends[1], L),
             };
             // Also for a path that is not a number.
-            done = !(left > to_end);
+            done = left <= to_end || left.is_nan();
             let to = match family {
                 _ if !done => wall,
                 Family::I => at - left,

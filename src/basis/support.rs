@@ -1,0 +1,103 @@
+//! Which nodes local max-ent sees: on a grid, and in a list.
+#![allow(non_snake_case)]
+
+use super::lme::{Failure, Lme};
+use super::{Scratch, Values};
+use crate::continuum::shape::Shape;
+use crate::cost::Cost;
+use crate::grid::{Grid, Located};
+use nalgebra::SVector;
+
+// ANCHOR: lme_support
+/// The cut-off radius R/h = √(−ln tol/γ): beyond it exp(−γ|ξ|²) < tol. A
+/// tolerance of 0 cuts nothing.
+pub fn radius(gamma: f64, cutoff: f64) -> f64 {
+    libm::sqrt(-libm::log(cutoff) / gamma)
+}
+// ANCHOR_END: lme_support
+
+// ANCHOR: lme_row
+/// One row of local max-ent on a grid: all nodes within R, and always the
+/// corners of the cell, so that x_p is in the hull of its nodes. Lengths are
+/// measured in cells along each axis.
+#[allow(clippy::too_many_arguments)]
+pub fn row<const D: usize>(
+    shape: &mut Shape<D>,
+    scratch: &mut Scratch<D>,
+    cost: &mut Cost,
+    gamma: f64,
+    cutoff: f64,
+    grid: &Grid<D>,
+    at: &Located<D>,
+    p: usize,
+) -> Result<(), Failure> {
+    let reach = radius(gamma, cutoff);
+    let Scratch { lme, lambda } = scratch;
+    lme.clear();
+    let first_entry = shape.len();
+    for node in grid.around(at, reach) {
+        let I = grid.node(node);
+        // The cell's lower corner is the base: offsets are whole numbers.
+        let offset = SVector::from_fn(|d, _| at.cell[d] as f64 - node[d] as f64);
+        let xi = at.xi + offset;
+        let is_corner = (0..D).all(|d| node[d] == at.cell[d] || node[d] == at.cell[d] + 1);
+        if is_corner || xi.dot(&xi) <= reach * reach {
+            lme.push(xi, offset);
+            shape.push(I, 0.0, SVector::zeros());
+        }
+    }
+    // The two nodes of the cell along each axis alone would give s/(1 − s).
+    let two_nodes = SVector::from_fn(|d, _| {
+        let s = at.xi[d];
+        let inside = 0.0 < s && s < 1.0;
+        if inside { -gamma * (1.0 - 2.0 * s) - libm::log(s / (1.0 - s)) } else { 0.0 }
+    });
+    let (exponentials, iterations) = (lme.exponentials, lme.iterations);
+    let found = match lambda.get(p) {
+        Some(last) => lme.evaluate(gamma, &[*last, SVector::zeros(), two_nodes]),
+        None => lme.evaluate(gamma, &[SVector::zeros(), two_nodes]),
+    }?;
+    cost.exponentials += lme.exponentials - exponentials;
+    cost.newton_iterations += lme.iterations - iterations;
+    match lambda.get_mut(p) {
+        Some(last) => *last = found,
+        None => lambda.push(found),
+    }
+    for (n, (N, grad)) in lme.p.iter().zip(&lme.grad).enumerate() {
+        shape.set(first_entry + n, *N, grad.component_div(&grid.h));
+    }
+    Ok(())
+}
+// ANCHOR_END: lme_row
+
+/// N and ∇N of one point for the command line and for scattered nodes: all
+/// nodes within R of x, as (node, N, ∇N), and λ (1/m).
+///
+/// `spacing` is the h (m) of γ = βh². Errors: [`Failure`].
+pub fn at<const D: usize>(
+    nodes: &[SVector<f64, D>],
+    spacing: f64,
+    gamma: f64,
+    cutoff: f64,
+    x: &SVector<f64, D>,
+) -> Result<(Values<D>, SVector<f64, D>), Failure> {
+    if nodes.iter().chain([x]).any(|place| place.iter().any(|x| !x.is_finite())) {
+        return Err(Failure::NotFinite);
+    }
+    let reach = radius(gamma, cutoff);
+    let scaled = |from: &SVector<f64, D>, to: &SVector<f64, D>| (from - to) / spacing;
+    let square = |I: &usize| {
+        let xi = scaled(x, &nodes[*I]);
+        xi.dot(&xi)
+    };
+    let near: Vec<usize> = (0..nodes.len()).filter(|I| square(I) <= reach * reach).collect();
+    let base = near.iter().min_by(|a, b| square(a).total_cmp(&square(b)));
+    let base = *base.ok_or(Failure::OutsideHull)?;
+    let mut lme = Lme::default();
+    for I in &near {
+        lme.push(scaled(x, &nodes[*I]), scaled(&nodes[base], &nodes[*I]));
+    }
+    let lambda = lme.evaluate(gamma, &[SVector::zeros()])?;
+    let values = near.iter().zip(&lme.p).zip(&lme.grad);
+    Ok((values.map(|((I, N), grad)| (*I, *N, grad / spacing)).collect(), lambda / spacing))
+}
