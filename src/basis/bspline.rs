@@ -1,5 +1,5 @@
 //! Quadratic B-splines centred at the nodes, corrected at the ends of the grid
-//! (the extension that the paper names, [18]), D = 1, 2, 3.
+//! (the extension that the paper names, its reference 18), D = 1, 2, 3.
 #![allow(non_snake_case)]
 
 use super::tensor::Line;
