@@ -58,7 +58,7 @@ impl<const D: usize> Grid<D> {
     /// x_I (m).
     pub fn position(&self, I: usize) -> SVector<f64, D> {
         let i = self.index(I);
-        SVector::from_fn(|d, _| self.coordinate(d, i[d] as f64))
+        SVector::from_fn(|d, _| self.coordinate(d, i[d]))
     }
 
     /// I of the node with index `i` along each axis; the first axis runs fastest.
@@ -91,8 +91,8 @@ impl<const D: usize> Grid<D> {
     }
 
     /// The coordinate along axis d of the nodes with index i (m).
-    fn coordinate(&self, d: usize, i: f64) -> f64 {
-        (i - self.before[d] as f64) * self.h[d]
+    fn coordinate(&self, d: usize, i: usize) -> f64 {
+        (i as f64 - self.before[d] as f64) * self.h[d]
     }
 
     /// The cell that holds `x` (m); `None` outside the grid or for NaN.
@@ -104,22 +104,20 @@ impl<const D: usize> Grid<D> {
         let mut cell = [0; D];
         let mut xi = SVector::zeros();
         for d in 0..D {
-            let (cells, lowest) = (self.cells[d] as f64, self.coordinate(d, 0.0));
-            if !(lowest <= x[d] && x[d] <= self.upper[d]) {
+            if !(self.coordinate(d, 0) <= x[d] && x[d] <= self.upper[d]) {
                 return None;
             }
-            let i = libm::floor(x[d] / self.h[d]) + self.before[d] as f64;
-            // The quotient may be rounded across a node.
-            let i = match i {
-                i if x[d] < self.coordinate(d, i) => i - 1.0,
-                i if x[d] >= self.coordinate(d, i + 1.0) => i + 1.0,
-                i => i,
-            };
-            let i = i.clamp(0.0, cells - 1.0);
-            cell[d] = i as usize;
-            let on_top = x[d] >= self.coordinate(d, i + 1.0);
+            let last = self.cells[d] - 1;
+            // Whole part of a number from 0 up. It may be rounded across a node.
+            let mut i = ((x[d] / self.h[d] + self.before[d] as f64) as usize).min(last);
+            if x[d] < self.coordinate(d, i) {
+                i -= 1;
+            } else if i < last && x[d] >= self.coordinate(d, i + 1) {
+                i += 1;
+            }
             let within = (x[d] - self.coordinate(d, i)) / self.h[d];
-            xi[d] = if on_top { 1.0 } else { within.min(1.0) };
+            let on_top = i == last && x[d] >= self.coordinate(d, i + 1);
+            (cell[d], xi[d]) = (i, if on_top { 1.0 } else { within.min(1.0) });
         }
         Some(Located { cell, xi })
     }

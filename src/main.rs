@@ -114,8 +114,8 @@ enum BasisName {
 
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
-        _ => Err("a finite number above 0 is allowed".to_string()),
+        Ok(x) if x > 0.0 && x.is_normal() && x.recip().is_normal() => Ok(x),
+        _ => Err("a number above 0, at least 1e-307 and at most 1e307, is allowed".to_string()),
     }
 }
 

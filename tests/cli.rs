@@ -468,6 +468,7 @@ fn bad_shape_input() {
         (shape(&lme, "line.csv", "x,y,z,w\n"), &["-, line 1", "x or x,y or x,y,z"]),
         (shape(&["lme"], "line.csv", "x\n0\n"), &["--gamma"]),
         (shape(&["lme", "--gamma", "-1"], "line.csv", "x\n0\n"), &["above 0"]),
+        (shape(&["lme", "--gamma", "1e-310"], "line.csv", "x\n0\n"), &["at least 1e-307"]),
         (shape(&["ugimp", "--half-length", "0.06"], "line.csv", "x\n0\n"), &["--half-length"]),
         (shape(&["ugimp", "--half-length", "0.02"], "line.csv", "x\n0\n"), &["point 0"]),
         (shape(&["cubic"], "line.csv", "x\n0\n"), &["cubic", "bspline"]),

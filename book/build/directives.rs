@@ -84,7 +84,7 @@ impl Directives {
                 ))
             }
             "equations" => index::equations(&self.definitions, to_root),
-            "symbols" => index::symbols(),
+            "symbols" => index::symbols(to_root),
             _ => bail!("this directive is not known"),
         }
     }

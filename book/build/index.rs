@@ -3,6 +3,7 @@
 use crate::listing::{Definitions, page_of};
 use crate::read;
 use anyhow::{Context, Result};
+use std::collections::BTreeMap;
 
 /// `data/equations.csv` as a table with links: equation → chapter → code → test.
 pub fn equations(definitions: &Definitions, to_root: &str) -> Result<String> {
@@ -41,8 +42,21 @@ fn linked(definitions: &Definitions, place: &str, to_root: &str) -> Result<Strin
     Ok(format!("[`{item}`]({to_root}{}#L{line})", page_of(file)))
 }
 
-/// `data/symbols.csv` as a table.
-pub fn symbols() -> Result<String> {
+/// `data/symbols.csv` as a table; "(14)" in its last column leads to the chapter.
+pub fn symbols(to_root: &str) -> Result<String> {
+    let equations = read("data/equations.csv")?;
+    let mut chapters = BTreeMap::new();
+    for row in csv::Reader::from_reader(equations.as_bytes()).records() {
+        let row = row?;
+        chapters.insert(format!("({})", &row[0]), row[4].to_string());
+    }
+    let linked = |first: &str| {
+        let link = |name: &str| match chapters.get(name) {
+            Some(chapter) if !chapter.is_empty() => format!("[{name}]({to_root}{chapter})"),
+            _ => name.to_string(),
+        };
+        first.split(", ").map(link).collect::<Vec<_>>().join(", ")
+    };
     let text = read("data/symbols.csv")?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let mut out = String::from(
@@ -53,7 +67,8 @@ pub fn symbols() -> Result<String> {
         let [paper, code, unit, shape, meaning, first] =
             std::array::from_fn(|at| row.get(at).unwrap_or("").to_string());
         out.push_str(&format!(
-            "| ${paper}$ | `{code}` | {unit} | {shape} | {meaning} | {first} |\n"
+            "| ${paper}$ | `{code}` | {unit} | {shape} | {meaning} | {} |\n",
+            linked(&first)
         ));
     }
     Ok(out)

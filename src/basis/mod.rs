@@ -87,12 +87,16 @@ pub fn tabulate<const D: usize>(
     x: &[SVector<f64, D>],
 ) -> Result<(), Trouble> {
     shape.clear();
+    let reach = match basis {
+        Basis::Lme { gamma, cutoff } => support::radius(*gamma, *cutoff),
+        _ => 0.0,
+    };
     for (p, x_p) in x.iter().enumerate() {
         let trouble = |reason| Trouble { particle: p, reason };
         let at = grid.locate(x_p).ok_or(trouble(Reason::OutsideGrid))?;
         match basis {
-            Basis::Lme { gamma, cutoff } => {
-                support::row(shape, scratch, cost, *gamma, *cutoff, grid, &at, p)
+            Basis::Lme { gamma, .. } => {
+                support::row(shape, scratch, cost, *gamma, reach, grid, &at, p)
                     .map_err(|failure| trouble(Reason::Lme(failure)))?;
             }
             _ => {

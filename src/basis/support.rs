@@ -17,7 +17,7 @@ pub fn radius(gamma: f64, cutoff: f64) -> f64 {
 // ANCHOR_END: lme_support
 
 // ANCHOR: lme_row
-/// One row of local max-ent on a grid: all nodes within R, and always the
+/// One row of local max-ent on a grid: all nodes within `reach` = R/h, and always the
 /// corners of the cell, so that x_p is in the hull of its nodes. Lengths are
 /// measured in cells along each axis.
 #[allow(clippy::too_many_arguments)]
@@ -26,14 +26,13 @@ pub fn row<const D: usize>(
     scratch: &mut Scratch<D>,
     cost: &mut Cost,
     gamma: f64,
-    cutoff: f64,
+    reach: f64,
     grid: &Grid<D>,
     at: &Located<D>,
     p: usize,
 ) -> Result<(), Failure> {
-    let reach = radius(gamma, cutoff);
     let Scratch { lme, lambda } = scratch;
-    lme.clear();
+    lme.clear(true);
     let first_entry = shape.len();
     for node in grid.around(at, reach) {
         let I = grid.node(node);
@@ -47,16 +46,17 @@ pub fn row<const D: usize>(
         }
     }
     // The two nodes of the cell along each axis alone would give s/(1 − s).
-    let two_nodes = SVector::from_fn(|d, _| {
-        let s = at.xi[d];
-        let inside = 0.0 < s && s < 1.0;
-        if inside { -gamma * (1.0 - 2.0 * s) - libm::log(s / (1.0 - s)) } else { 0.0 }
-    });
+    let two_nodes = || {
+        SVector::from_fn(|d, _| {
+            let s = at.xi[d];
+            let inside = 0.0 < s && s < 1.0;
+            if inside { -gamma * (1.0 - 2.0 * s) - libm::log(s / (1.0 - s)) } else { 0.0 }
+        })
+    };
     let (exponentials, iterations) = (lme.exponentials, lme.iterations);
-    let found = match lambda.get(p) {
-        Some(last) => lme.evaluate(gamma, &[*last, SVector::zeros(), two_nodes]),
-        None => lme.evaluate(gamma, &[SVector::zeros(), two_nodes]),
-    }?;
+    let last = lambda.get(p).copied();
+    let starts = last.into_iter().chain([SVector::zeros()]);
+    let found = lme.evaluate(gamma, starts.chain(std::iter::once_with(two_nodes)))?;
     cost.exponentials += lme.exponentials - exponentials;
     cost.newton_iterations += lme.iterations - iterations;
     match lambda.get_mut(p) {
@@ -94,10 +94,11 @@ pub fn at<const D: usize>(
     let base = near.iter().min_by(|a, b| square(a).total_cmp(&square(b)));
     let base = *base.ok_or(Failure::OutsideHull)?;
     let mut lme = Lme::default();
+    lme.clear(false);
     for I in &near {
         lme.push(scaled(x, &nodes[*I]), scaled(&nodes[base], &nodes[*I]));
     }
-    let lambda = lme.evaluate(gamma, &[SVector::zeros()])?;
+    let lambda = lme.evaluate(gamma, [SVector::zeros()])?;
     let values = near.iter().zip(&lme.p).zip(&lme.grad);
     Ok((values.map(|((I, N), grad)| (*I, *N, grad / spacing)).collect(), lambda / spacing))
 }

@@ -1,7 +1,12 @@
 //! Pointwise laws, without any loop over particles or nodes: compatibility (2),
 //! linear elasticity in rate form (3), and conservation of mass (17).
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
+
+/// a ⊗ b, the matrix a_i b_j.
+pub fn outer<const D: usize>(a: &SVector<f64, D>, b: &SVector<f64, D>) -> SMatrix<f64, D, D> {
+    SMatrix::from_fn(|i, j| a[i] * b[j])
+}
 
 // ANCHOR: strain_rate
 /// (2): ε̇ = ∇ˢv = ½ (∇v + ∇ᵀv).

@@ -2,6 +2,7 @@
 //! with the lumped mass matrix of (18).
 #![allow(non_snake_case)]
 
+use super::law::outer;
 use super::shape::Shape;
 use super::state::{Nodes, Particles};
 use nalgebra::{SMatrix, SVector};
@@ -57,7 +58,7 @@ pub fn velocity_gradient<const D: usize>(
     if let Some((first, _, _)) = with_mass().next() {
         let v_0 = node.v[first];
         for (I, _, grad_N_Ip) in with_mass() {
-            grad_v += (node.v[I] - v_0) * grad_N_Ip.transpose();
+            grad_v += outer(&(node.v[I] - v_0), grad_N_Ip);
         }
     }
     grad_v
