@@ -2,7 +2,7 @@
 //! state at k = 0.
 #![allow(non_snake_case)]
 
-use crate::basis::{Basis, Scratch};
+use crate::basis::{Basis, Scratch, support};
 use crate::continuum::law::LinearElastic;
 use crate::continuum::shape::Shape;
 use crate::continuum::state::{Nodes, Particles, State};
@@ -64,6 +64,22 @@ impl Scene {
             nodes *= before + cells + after + 1.0;
         }
         (particles, nodes, self.step_count())
+    }
+
+    /// The most nodes that a particle can see, before anything is built.
+    pub fn pairs_per_particle(&self) -> f64 {
+        let along = |d: usize| {
+            let [before, after] = self.grid.beyond[d];
+            let nodes = (before + self.grid.cells[d] + after) as f64 + 1.0;
+            match self.basis {
+                Basis::Linear => 2.0,
+                Basis::Ugimp { .. } | Basis::BSpline => 3.0,
+                Basis::Lme { gamma, cutoff } => {
+                    (2.0 * support::radius(gamma, cutoff) + 2.0).min(nodes)
+                }
+            }
+        };
+        (0..self.dimension()).map(along).product()
     }
 
     /// c Δt / h of the run, at or below `time.cfl`.

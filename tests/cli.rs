@@ -443,6 +443,12 @@ fn bad_basis_keys() {
     for (name, from, to, words) in cases {
         assert_bad_scene(name, from, to, words);
     }
+    // A support that covers everything must fit into memory, too.
+    let dir = directory("bad-wide");
+    let sets = "basis.kind=lme basis.gamma=1e-6 basis.cutoff=0 grid.cells=100000";
+    let sets: Vec<&str> = sets.split(' ').flat_map(|set| ["--set", set]).collect();
+    let output = program(&dir, &[&["run", DYKA][..], &sets].concat());
+    assert_fails(&output, 2, &["grid.cells", "GB of memory"]);
 }
 
 /// `shape` refuses what a basis cannot serve, with the line of the file.

@@ -442,7 +442,7 @@ fn affordable(
     let (particles, nodes, steps) = scene.sizes();
     let d = scene.dimension() as f64;
     let particle_bytes = 8.0 * (2.0 + 3.0 * d + 2.0 * d * d);
-    let pair_bytes = 8.0 * (2.0 + d) * libm::exp2(d);
+    let pair_bytes = 8.0 * (2.0 + d) * scene.pairs_per_particle();
     let node_bytes = 8.0 * (1.0 + 3.0 * d);
     let rows = steps / scene.every as f64;
     // A number in the table, as text in CSV, and as a point of a picture.
@@ -450,9 +450,9 @@ fn affordable(
     let space = particles * (particle_bytes + pair_bytes) + nodes * node_bytes;
     let limit = MEMORY / 1e9;
     if space > MEMORY {
-        let problem = format!("this grid needs {:.1} GB of memory", space / 1e9);
+        let problem = format!("this grid and basis need {:.1} GB of memory", space / 1e9);
         let mut error = check.source.error("grid.cells", grid.cells.span(), problem);
-        error.allowed = format!("a grid that needs at most {limit:.1} GB");
+        error.allowed = format!("a grid and basis that need at most {limit:.1} GB");
         return Err(error);
     }
     if steps > MOST_STEPS {
