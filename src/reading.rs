@@ -3,7 +3,7 @@
 //!
 //! Notes without a type, because only one reading runs:
 //!
-//! * **Order of the stress update.** The algorithm never says when (3) is
+//! * **Order of the stress update** of the Algorithm. It never says when (3) is
 //!   applied. It stands between steps 6 and 7 here: the force of step 7 needs
 //!   σ at k+1, and (3) needs Δε of step 5.
 //! * **Step 1, (28).** The algorithm writes (1 − γ) Σ f N / m Δt, the text
@@ -43,4 +43,22 @@ pub enum StepEight {
     /// displacement twice, which is then of first order. The velocity does not
     /// see p_I and stays of second order.
     AsPrinted,
+}
+
+/// Forward Euler: when the stress is updated, which the paper leaves open.
+///
+/// On particles that do not leave their places, `First` and `ModifiedLast` are
+/// one leapfrog, the same as Newmark's method, with the time labels of velocity
+/// and stress shifted; `Last` takes the strain from the nodes' own velocity,
+/// which differs from that of the particles mapped anew.
+///
+/// Tests: `integrators_are_one_leapfrog` in `tests/integrators.rs`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StressUpdate {
+    /// Before the forces, from the momentum as mapped.
+    First,
+    /// After the particles have moved, from the advanced nodal momentum.
+    Last,
+    /// After the particles have moved, from their momentum mapped anew.
+    ModifiedLast,
 }

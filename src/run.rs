@@ -77,7 +77,9 @@ fn run_in<const D: usize>(
     let model = Model::<D>::of(scene);
     let mut state = model.initial_state(scene);
     let mut recorder = Recorder::new(scene, &model, &state.particle);
-    let bytes = Particles::<D>::BYTES + model.basis.bytes_per_particle::<D>();
+    let bytes = Particles::<D>::BYTES
+        + model.basis.bytes_per_particle::<D>()
+        + model.integrator.bytes_per_particle::<D>();
     let mut cost = Cost { bytes_per_particle: bytes as u64, ..Cost::default() };
     match march(scene, &model, &mut state, &mut recorder, &mut cost, progress) {
         Err(breakdown) => Err(Box::new(Stopped { breakdown, history: recorder.history })),

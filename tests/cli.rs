@@ -320,7 +320,12 @@ fn bad_choices() {
         ("mass", "\"lumped\"", "\"lump\"", &["mass", "allowed: \"lumped\"", "mean `lumped`?"]),
         ("basis", "\"linear\"", "\"liner\"", &["basis.kind", "\"linear\"", "mean `linear`?"]),
         ("scheme", "\"newmark\"", "\"newmarc\"", &["time.integrator", "newmark", "did you mean"]),
-        ("reading", "\"second-order\"", "\"second\"", &["time.reading", "as-printed", "did you"]),
+        (
+            "reading",
+            "cfl = 0.5",
+            "reading = \"second\"\ncfl = 0.5",
+            &["time.reading", "as-printed", "did you"],
+        ),
         ("fixed", "\"fixed\"", "\"fix\"", &["boundary.left", "\"free\"", "mean `fixed`?"]),
         ("probed", "\"velocity\"", "\"speed\"", &["probe[0].quantity", "\"stress\"", "allowed"]),
     ];

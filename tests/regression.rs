@@ -19,14 +19,6 @@ use support::*;
 /// Rows of a history that are printed; the digest covers all of them.
 const ROWS: usize = 41;
 
-/// FNV-1a over the bits of every number: one changed bit changes it.
-fn digest(column: &[f64]) -> u64 {
-    let bytes = column.iter().flat_map(|x| x.to_bits().to_le_bytes());
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
-}
-
 /// A probe's history, thinned out to `ROWS` rows of nine digits, and a digest
 /// of the bits of all rows.
 fn pin(outcome: &Outcome, probe: &str) -> String {

@@ -24,6 +24,8 @@ pub struct Particles<const D: usize> {
     pub sigma: Vec<SMatrix<f64, D, D>>,
     /// Δε_p, strain increment of the step (–).
     pub d_eps: Vec<SMatrix<f64, D, D>>,
+    /// a_p, acceleration (m/s²); only with generalized-α, else empty.
+    pub a: Vec<SVector<f64, D>>,
 }
 // ANCHOR_END: particles
 
@@ -39,6 +41,9 @@ pub struct Nodes<const D: usize> {
     pub v: Vec<SVector<f64, D>>,
     /// f_I, force (N).
     pub f: Vec<SVector<f64, D>>,
+    /// a_I of k and of k+1 (m/s²); only with generalized-α, else empty.
+    pub a: Vec<SVector<f64, D>>,
+    pub a_next: Vec<SVector<f64, D>>,
 }
 // ANCHOR_END: nodes
 
@@ -70,6 +75,7 @@ impl<const D: usize> Particles<D> {
             rho: vec![rho; n],
             sigma: vec![SMatrix::zeros(); n],
             d_eps: vec![SMatrix::zeros(); n],
+            a: Vec::new(),
         }
     }
 
@@ -91,6 +97,8 @@ impl<const D: usize> Nodes<D> {
             p: vec![SVector::zeros(); n],
             v: vec![SVector::zeros(); n],
             f: vec![SVector::zeros(); n],
+            a: Vec::new(),
+            a_next: Vec::new(),
         }
     }
 

@@ -65,6 +65,25 @@ pub fn velocity_gradient<const D: usize>(
 }
 // ANCHOR_END: velocity_gradient
 
+// ANCHOR: to_particle_divided
+/// (20) (21): Σ_I (q_I / m_I) N_Ip, as forward Euler has it. Here a tiny mass
+/// divides a force that need not be tiny; see [`to_particle`].
+pub fn to_particle_divided<const D: usize>(
+    q: &[SVector<f64, D>],
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    p: usize,
+) -> SVector<f64, D> {
+    let mut sum = SVector::zeros();
+    for (I, N_Ip, _) in shape.of(p) {
+        if node.m[I] > 0.0 {
+            sum += q[I] / node.m[I] * N_Ip;
+        }
+    }
+    sum
+}
+// ANCHOR_END: to_particle_divided
+
 // ANCHOR: to_particle
 /// (19): Σ_I q_I N_Ip / m_I, a nodal momentum or force carried to particle p.
 ///

@@ -56,6 +56,8 @@ pub struct FileBasis {
 pub struct FileTime {
     pub integrator: Spanned<String>,
     pub reading: Option<Spanned<String>>,
+    pub stress_update: Option<Spanned<String>>,
+    pub rho_b: Option<Spanned<f64>>,
     pub cfl: Spanned<f64>,
     pub end: Spanned<f64>,
 }

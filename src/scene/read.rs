@@ -3,7 +3,7 @@
 use super::file::*;
 use super::*;
 use crate::fault::SceneError;
-use crate::reading::StepEight;
+use crate::reading::{StepEight, StressUpdate};
 use crate::scene::keys::nearest;
 use crate::scene::source::Source;
 use std::collections::BTreeMap;
@@ -193,21 +193,62 @@ fn body(check: &Check, file: &FileBody) -> Result<Body, Box<SceneError>> {
 }
 
 fn time(check: &Check, file: &FileTime) -> Result<Time, Box<SceneError>> {
-    let readings = [("second-order", StepEight::SecondOrder), ("as-printed", StepEight::AsPrinted)];
-    let reading = match &file.reading {
-        None => StepEight::default(),
-        Some(text) => check.choose("time.reading", text.get_ref(), text.span(), &readings)?,
-    };
     Ok(Time {
-        integrator: check.choose(
-            "time.integrator",
-            file.integrator.get_ref(),
-            file.integrator.span(),
-            &[("newmark", Integrator::Newmark(reading))],
-        )?,
+        integrator: integrator(check, file)?,
         cfl: check.number("time.cfl", &file.cfl, |x| x > 0.0)?,
         end: check.number("time.end", &file.end, |x| x > 0.0)?,
     })
+}
+
+/// The scheme with what it needs; keys that mean nothing to it are refused.
+fn integrator(check: &Check, file: &FileTime) -> Result<Integrator, Box<SceneError>> {
+    let (name, span) = (file.integrator.get_ref().as_str(), file.integrator.span());
+    let kinds = [
+        ("newmark", "time.reading"),
+        ("forward-euler", "time.stress_update"),
+        ("corrected-euler", ""),
+        ("generalized-alpha", "time.rho_b"),
+    ];
+    let own = check.choose("time.integrator", name, span.clone(), &kinds)?;
+    let given = [
+        ("time.reading", file.reading.as_ref().map(Spanned::span)),
+        ("time.stress_update", file.stress_update.as_ref().map(Spanned::span)),
+        ("time.rho_b", file.rho_b.as_ref().map(Spanned::span)),
+    ];
+    for (key, span) in given {
+        if let Some(span) = span.filter(|_| key != own) {
+            let problem = format!("it means nothing to the integrator \"{name}\"");
+            return Err(check.source.error(key, span, problem));
+        }
+    }
+    let needs = || {
+        check.source.error(own, span.clone(), format!("the integrator \"{name}\" needs this key"))
+    };
+    match own {
+        "time.reading" => {
+            let readings =
+                [("second-order", StepEight::SecondOrder), ("as-printed", StepEight::AsPrinted)];
+            let Some(text) = &file.reading else {
+                return Ok(Integrator::Newmark(StepEight::default()));
+            };
+            check.choose(own, text.get_ref(), text.span(), &readings).map(Integrator::Newmark)
+        }
+        "time.stress_update" => {
+            let orders = [
+                ("first", StressUpdate::First),
+                ("last", StressUpdate::Last),
+                ("modified-last", StressUpdate::ModifiedLast),
+            ];
+            let text = file.stress_update.as_ref().ok_or_else(needs)?;
+            check.choose(own, text.get_ref(), text.span(), &orders).map(Integrator::ForwardEuler)
+        }
+        "time.rho_b" => {
+            let rho_b = file.rho_b.as_ref().ok_or_else(needs)?;
+            let rho_b = check.number(own, rho_b, |rho_b| (0.0..=1.0).contains(&rho_b))?;
+            Ok(Integrator::GeneralizedAlpha { rho_b })
+        }
+        _ => Ok(Integrator::CorrectedEuler),
+    }
 }
 
 /// What a scene's basis needs; keys that mean nothing to it are refused.

@@ -1,5 +1,7 @@
 //! Time integration (§4): the nine steps, and the schemes that order them.
 
+pub mod euler;
+pub mod generalized_alpha;
 pub mod newmark;
 pub mod steps;
 
@@ -7,22 +9,45 @@ use crate::continuum::state::State;
 use crate::cost::Cost;
 use crate::fault::{Breakdown, Moment};
 use crate::model::Model;
-use crate::reading::StepEight;
+use crate::reading::{StepEight, StressUpdate};
 
 /// The scheme that carries a scene through time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrator {
     /// The paper's explicit predictor-corrector, (27)-(29).
     Newmark(StepEight),
+    /// Forward Euler, (20)-(21).
+    ForwardEuler(StressUpdate),
+    /// Its corrected form, (22)-(23).
+    CorrectedEuler,
+    /// Explicit generalized-α, (24)-(26).
+    GeneralizedAlpha {
+        /// ρ_b, the spectral radius at the bifurcation, 0 to 1.
+        rho_b: f64,
+    },
 }
 
-/// Nodal values at k = 0: one time step with Δt = 0, in which nothing moves.
+impl Integrator {
+    /// Bytes that the scheme keeps for each particle: a_p of generalized-α.
+    pub fn bytes_per_particle<const D: usize>(&self) -> usize {
+        match self {
+            Integrator::GeneralizedAlpha { .. } => size_of::<nalgebra::SVector<f64, D>>(),
+            _ => 0,
+        }
+    }
+}
+
+/// What a scheme needs at k = 0: with Newmark nodal values, by one time step with
+/// Δt = 0, in which nothing moves; with the others nothing.
 pub fn start<const D: usize>(
     state: &mut State<D>,
     model: &Model<D>,
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
-    step(state, model, 0.0, Moment::START, cost)
+    match model.integrator {
+        Integrator::Newmark(_) => step(state, model, 0.0, Moment::START, cost),
+        _ => steps::finite(&state.particle, Moment::START),
+    }
 }
 
 /// One time step, from k to `moment`.
@@ -47,6 +72,11 @@ fn step<const D: usize>(
 ) -> Result<(), Breakdown> {
     match model.integrator {
         Integrator::Newmark(reading) => newmark::step(state, model, reading, dt, moment, cost),
+        Integrator::ForwardEuler(order) => euler::forward(state, model, order, dt, moment, cost),
+        Integrator::CorrectedEuler => euler::corrected(state, model, dt, moment, cost),
+        Integrator::GeneralizedAlpha { rho_b } => {
+            generalized_alpha::step(state, model, rho_b, dt, moment, cost)
+        }
     }?;
     steps::finite(&state.particle, moment)
 }

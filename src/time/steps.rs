@@ -41,6 +41,8 @@ pub fn discard<const D: usize>(node: &mut Nodes<D>) {
     node.p.fill(SVector::zeros());
     node.v.fill(SVector::zeros());
     node.f.fill(SVector::zeros());
+    node.a.fill(SVector::zeros());
+    node.a_next.fill(SVector::zeros());
 }
 // ANCHOR_END: discard
 
@@ -183,6 +185,93 @@ pub fn correct<const D: usize>(
     }
 }
 // ANCHOR_END: correct
+
+// ANCHOR: euler_steps
+/// Strain, density and stress of all particles from the nodal velocity: (16),
+/// (17), (3).
+///
+/// Errors: [`Breakdown::Inverted`], [`Breakdown::NotFinite`].
+pub fn update_material<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    model: &Model<D>,
+    dt: f64,
+    moment: Moment,
+) -> Result<(), Breakdown> {
+    increment_strain(particle, node, shape, dt);
+    update_density(particle, moment)?;
+    update_stress(particle, &model.law);
+    Ok(())
+}
+
+/// (18) over one step: p_I += f_I Δt  (kg m/s).
+pub fn advance_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64) {
+    for I in 0..node.len() {
+        node.p[I] += node.f[I] * dt;
+    }
+}
+
+/// (20) v_p += Δt Σ_I N_Ip a_I and (21) x_p += Δt Σ_I N_Ip v_I, with
+/// a_I = f_I/m_I and v_I = p_I/m_I of the advanced momentum.
+pub fn move_with_nodes<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        particle.v[p] += sums::to_particle_divided(&node.f, node, shape, p) * dt;
+        particle.x[p] += sums::to_particle_divided(&node.p, node, shape, p) * dt;
+    }
+}
+
+/// (23) v_p += Δt Σ_I N_Ip f_I / m_I and (22) x_p += Δt Σ_I N_Ip p_I / m_I.
+pub fn move_with_shares<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        particle.v[p] += sums::to_particle(&node.f, node, shape, p) * dt;
+        particle.x[p] += sums::to_particle(&node.p, node, shape, p) * dt;
+    }
+}
+
+/// p_I = Σ_p m_p v_p N_Ip with the particles' new velocity and the old N_Ip.
+pub fn map_momentum_anew<const D: usize>(
+    node: &mut Nodes<D>,
+    particle: &Particles<D>,
+    shape: &Shape<D>,
+) {
+    node.p.fill(SVector::zeros());
+    sums::momentum(node, particle, shape);
+}
+// ANCHOR_END: euler_steps
+
+/// a_I = Σ_p m_p a_p N_Ip / m_I (m/s²), 0 where the boundary is fixed.
+pub fn map_acceleration<const D: usize>(
+    node: &mut Nodes<D>,
+    particle: &mut Particles<D>,
+    shape: &Shape<D>,
+    fixed: &Fixed,
+) {
+    particle.a.resize(particle.m.len(), SVector::zeros());
+    node.a.resize(node.m.len(), SVector::zeros());
+    node.a_next.resize(node.m.len(), SVector::zeros());
+    for (I, p, N_Ip, _) in shape.pairs() {
+        node.a[I] += particle.a[p] * (particle.m[p] * N_Ip);
+    }
+    for I in 0..node.len() {
+        if node.m[I] > 0.0 {
+            node.a[I] /= node.m[I];
+        }
+    }
+    for &(I, i) in fixed {
+        node.a[I][i] = 0.0;
+    }
+}
 
 /// Stops a run in the step in which a particle stops being finite.
 ///

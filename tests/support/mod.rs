@@ -72,3 +72,11 @@ fn settings() -> insta::Settings {
     settings.set_omit_expression(true);
     settings
 }
+
+/// FNV-1a over the bits of every number: one changed bit changes it.
+pub fn digest(column: &[f64]) -> u64 {
+    let bytes = column.iter().flat_map(|x| x.to_bits().to_le_bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
