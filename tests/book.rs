@@ -227,7 +227,7 @@ fn chapters_are_in_the_summary() {
 }
 
 /// A directory of its own with the scenes, where commands may write.
-fn workplace(name: &str) -> PathBuf {
+fn directory(name: &str) -> PathBuf {
     let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::remove_dir_all(&dir).ok();
     fs::create_dir_all(dir.join("data/scenes")).unwrap();
@@ -256,7 +256,7 @@ fn shell(dir: &Path, line: &str) -> String {
 fn commands_of_the_book_run() {
     let mut commands = 0;
     for (chapter, text) in chapters() {
-        let dir = workplace(&format!("book-{}", chapter.trim_end_matches(".md")));
+        let dir = directory(&format!("book-{}", chapter.trim_end_matches(".md")));
         for block in text.split("```console\n").skip(1) {
             let block = block.split("```").next().unwrap();
             for piece in block.split("$ ").skip(1) {
@@ -276,7 +276,7 @@ fn commands_of_the_book_run() {
 #[test]
 fn commands_of_the_readme_run() {
     let readme = read("README.md");
-    let dir = workplace("readme");
+    let dir = directory("readme");
     let blocks = readme.split("```sh\n").skip(1).map(|block| block.split("```").next().unwrap());
     let lines: Vec<&str> =
         blocks.flat_map(str::lines).filter(|line| line.contains("cargo run")).collect();

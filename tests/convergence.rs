@@ -3,37 +3,19 @@
 mod support;
 
 use lme_mpm::measure::rms;
-use lme_mpm::model::Model;
 use lme_mpm::summary::lines;
-use nalgebra::Vector1;
 use support::*;
-
-/// u and v of all particles at t = L/c, from v = v0 sin(πx/2L), on one grid
-/// with `steps` time steps.
-fn smooth_run(reading: &str, steps: usize) -> (Vec<f64>, Vec<f64>) {
-    let scene = dyka(&["grid.cells=160", &format!("time.reading={reading}")]);
-    let mut model = Model::<1>::of(&scene);
-    model.dt = transit() / steps as f64;
-    let mut state = model.initial_state(&scene);
-    let start: Vec<f64> = state.particle.x.iter().map(|x| x[0]).collect();
-    for (v, x) in state.particle.v.iter_mut().zip(&start) {
-        *v = Vector1::new(0.1 * (std::f64::consts::FRAC_PI_2 * x / 0.1333).sin());
-    }
-    march(&model, &mut state, steps);
-    let u = state.particle.x.iter().zip(&start).map(|(x, start)| x[0] - start).collect();
-    (u, state.particle.v.iter().map(|v| v[0]).collect())
-}
 
 /// The slopes of u and v in Δt, against a run of the same grid with 16 times
 /// the steps of the finest, so that the grid's own error drops out.
 fn orders(reading: &str) -> (f64, f64) {
-    let (u, v) = smooth_run("second-order", 8192);
+    let (u, v) = smooth_run(&["time.reading=second-order"], 8192);
     let steps = [128, 192, 256, 384, 512];
     let dt: Vec<f64> = steps.iter().map(|n| 1.0 / *n as f64).collect();
     let errors: Vec<(f64, f64)> = steps
         .iter()
         .map(|n| {
-            let (u_n, v_n) = smooth_run(reading, *n);
+            let (u_n, v_n) = smooth_run(&[&format!("time.reading={reading}")], *n);
             (rms(u_n.into_iter().zip(u.clone())), rms(v_n.into_iter().zip(v.clone())))
         })
         .collect();

@@ -80,3 +80,19 @@ pub fn digest(column: &[f64]) -> u64 {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
 }
+
+/// u and v of all particles of the bar at t = L/c, from v = v0 sin(πx/2L), on 160
+/// cells with `steps` time steps.
+pub fn smooth_run(sets: &[&str], steps: usize) -> (Vec<f64>, Vec<f64>) {
+    let scene = dyka(&[sets, &["grid.cells=160"]].concat());
+    let mut model = Model::<1>::of(&scene);
+    model.dt = transit() / steps as f64;
+    let mut state = model.initial_state(&scene);
+    let start: Vec<f64> = state.particle.x.iter().map(|x| x[0]).collect();
+    for (v, x) in state.particle.v.iter_mut().zip(&start) {
+        v[0] = 0.1 * (std::f64::consts::FRAC_PI_2 * x / 0.1333).sin();
+    }
+    march(&model, &mut state, steps);
+    let u = state.particle.x.iter().zip(&start).map(|(x, start)| x[0] - start).collect();
+    (u, state.particle.v.iter().map(|v| v[0]).collect())
+}
