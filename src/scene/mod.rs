@@ -4,9 +4,12 @@
 //! means free sides, no region of initial velocity means a body at rest, no
 //! probe means no probe column. [`keys::KEYS`] lists every key.
 
+mod check;
 mod file;
 pub mod keys;
+mod limits;
 mod read;
+mod scheme;
 mod source;
 
 use crate::basis::Basis;

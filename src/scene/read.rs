@@ -1,13 +1,13 @@
 //! From the file as written to a checked [`Scene`]: every value in range.
 
+use super::check::{Check, counted};
 use super::file::*;
+use super::limits::affordable;
+use super::scheme::{basis, time};
 use super::*;
 use crate::fault::SceneError;
-use crate::reading::{StepEight, StressUpdate};
-use crate::scene::keys::nearest;
 use crate::scene::source::Source;
 use std::collections::BTreeMap;
-use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -28,83 +28,6 @@ const TAKEN: [&str; 10] = [
     "displacement_field",
     "energy",
 ];
-
-/// The most memory that a scene may ask for (bytes).
-const MEMORY: f64 = 16.0 * 1024.0 * 1024.0 * 1024.0;
-
-/// More steps than any run will finish.
-const MOST_STEPS: f64 = 1e12;
-
-/// Range checks that know where every value was written.
-struct Check<'a> {
-    source: &'a Source,
-    dimension: usize,
-}
-
-impl Check<'_> {
-    fn number(
-        &self,
-        key: &str,
-        value: &Spanned<f64>,
-        good: impl Fn(f64) -> bool,
-    ) -> Result<f64, Box<SceneError>> {
-        let x = *value.get_ref();
-        if x.is_finite() && good(x) {
-            return Ok(x);
-        }
-        Err(self.source.error(key, value.span(), format!("{x:?} is out of range")))
-    }
-
-    /// One entry for each axis, all good.
-    fn axes<T: Copy + fmt::Debug>(
-        &self,
-        key: &str,
-        value: &Spanned<PerAxis<T>>,
-        good: impl Fn(usize, T) -> bool,
-    ) -> Result<Vec<T>, Box<SceneError>> {
-        let list = &value.get_ref().0;
-        if list.len() != self.dimension {
-            let problem = format!(
-                "{} given, but the scene has {}, as body.length has {}",
-                counted(list.len(), "number"),
-                counted(self.dimension, "axis"),
-                counted(self.dimension, "entry")
-            );
-            return Err(self.source.error(key, value.span(), problem));
-        }
-        match list.iter().enumerate().find(|&(d, x)| !good(d, *x)) {
-            None => Ok(list.clone()),
-            Some((_, x)) => {
-                Err(self.source.error(key, value.span(), format!("{x:?} is out of range")))
-            }
-        }
-    }
-
-    /// The choice that the text names.
-    fn choose<T: Copy>(
-        &self,
-        key: &str,
-        text: &str,
-        span: Range<usize>,
-        choices: &[(&str, T)],
-    ) -> Result<T, Box<SceneError>> {
-        if let Some((_, choice)) = choices.iter().find(|(name, _)| *name == text) {
-            return Ok(*choice);
-        }
-        let mut error = self.source.error(key, span, format!("\"{text}\" is not known here"));
-        error.suggestion = nearest(text, choices.iter().map(|(name, _)| *name));
-        Err(error)
-    }
-}
-
-fn counted(n: usize, word: &str) -> String {
-    match (n, word) {
-        (1, _) => format!("1 {word}"),
-        (_, "axis") => format!("{n} axes"),
-        (_, "entry") => format!("{n} entries"),
-        _ => format!("{n} {word}s"),
-    }
-}
 
 /// Reads and checks a scene.
 pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
@@ -190,96 +113,6 @@ fn body(check: &Check, file: &FileBody) -> Result<Body, Box<SceneError>> {
         return Err(error);
     }
     Ok(body)
-}
-
-fn time(check: &Check, file: &FileTime) -> Result<Time, Box<SceneError>> {
-    Ok(Time {
-        integrator: integrator(check, file)?,
-        cfl: check.number("time.cfl", &file.cfl, |x| x > 0.0)?,
-        end: check.number("time.end", &file.end, |x| x > 0.0)?,
-    })
-}
-
-/// The scheme with what it needs; keys that mean nothing to it are refused.
-fn integrator(check: &Check, file: &FileTime) -> Result<Integrator, Box<SceneError>> {
-    let (name, span) = (file.integrator.get_ref().as_str(), file.integrator.span());
-    let kinds = [
-        ("newmark", "time.reading"),
-        ("forward-euler", "time.stress_update"),
-        ("corrected-euler", ""),
-        ("generalized-alpha", "time.rho_b"),
-    ];
-    let own = check.choose("time.integrator", name, span.clone(), &kinds)?;
-    let given = [
-        ("time.reading", file.reading.as_ref().map(Spanned::span)),
-        ("time.stress_update", file.stress_update.as_ref().map(Spanned::span)),
-        ("time.rho_b", file.rho_b.as_ref().map(Spanned::span)),
-    ];
-    for (key, span) in given {
-        if let Some(span) = span.filter(|_| key != own) {
-            let problem = format!("it means nothing to the integrator \"{name}\"");
-            return Err(check.source.error(key, span, problem));
-        }
-    }
-    let needs = || {
-        check.source.error(own, span.clone(), format!("the integrator \"{name}\" needs this key"))
-    };
-    match own {
-        "time.reading" => {
-            let readings =
-                [("second-order", StepEight::SecondOrder), ("as-printed", StepEight::AsPrinted)];
-            let Some(text) = &file.reading else {
-                return Ok(Integrator::Newmark(StepEight::default()));
-            };
-            check.choose(own, text.get_ref(), text.span(), &readings).map(Integrator::Newmark)
-        }
-        "time.stress_update" => {
-            let orders = [
-                ("first", StressUpdate::First),
-                ("last", StressUpdate::Last),
-                ("modified-last", StressUpdate::ModifiedLast),
-            ];
-            let text = file.stress_update.as_ref().ok_or_else(needs)?;
-            check.choose(own, text.get_ref(), text.span(), &orders).map(Integrator::ForwardEuler)
-        }
-        "time.rho_b" => {
-            let rho_b = file.rho_b.as_ref().ok_or_else(needs)?;
-            let rho_b = check.number(own, rho_b, |rho_b| (0.0..=1.0).contains(&rho_b))?;
-            Ok(Integrator::GeneralizedAlpha { rho_b })
-        }
-        _ => Ok(Integrator::CorrectedEuler),
-    }
-}
-
-/// What a scene's basis needs; keys that mean nothing to it are refused.
-fn basis(check: &Check, file: &FileBasis, grid: &GridSpec) -> Result<Basis, Box<SceneError>> {
-    let half = |d: usize| grid.particles_per_cell.get(d).map_or(0.5, |n| 0.5 / *n as f64);
-    let lme = Basis::Lme { gamma: f64::NAN, cutoff: 1e-6 };
-    let kinds = [
-        ("linear", Basis::Linear),
-        ("ugimp", Basis::Ugimp { half_length: [half(0), half(1), half(2)] }),
-        ("lme", lme),
-        ("bspline", Basis::BSpline),
-    ];
-    let kind = check.choose("basis.kind", file.kind.get_ref(), file.kind.span(), &kinds)?;
-    let Basis::Lme { mut cutoff, .. } = kind else {
-        for (key, value) in [("basis.gamma", &file.gamma), ("basis.cutoff", &file.cutoff)] {
-            if let Some(value) = value {
-                let problem = format!("it means nothing to the basis \"{}\"", file.kind.get_ref());
-                return Err(check.source.error(key, value.span(), problem));
-            }
-        }
-        return Ok(kind);
-    };
-    let Some(gamma) = &file.gamma else {
-        let problem = "the basis \"lme\" needs this key";
-        return Err(check.source.error("basis.gamma", file.kind.span(), problem));
-    };
-    let gamma = check.number("basis.gamma", gamma, |gamma| (1e-6..=1e6).contains(&gamma))?;
-    if let Some(value) = &file.cutoff {
-        cutoff = check.number("basis.cutoff", value, |tol| (0.0..1.0).contains(&tol))?;
-    }
-    Ok(Basis::Lme { gamma, cutoff })
 }
 
 /// Refuses a side or component that the scene has no axis for.
@@ -471,45 +304,4 @@ fn quantity(
             Err(check.source.error(&key("component"), component.span(), problem))
         }
     }
-}
-
-/// Refuses a scene whose arrays would not fit, before any is allocated.
-fn affordable(
-    check: &Check,
-    scene: &Scene,
-    grid: &FileGrid,
-    time: &FileTime,
-) -> Result<(), Box<SceneError>> {
-    let (particles, nodes, steps) = scene.sizes();
-    let d = scene.dimension() as f64;
-    let particle_bytes = 8.0 * (2.0 + 3.0 * d + 2.0 * d * d);
-    let pair_bytes = 8.0 * (2.0 + d) * scene.pairs_per_particle();
-    let node_bytes = 8.0 * (1.0 + 3.0 * d);
-    let rows = steps / scene.every as f64;
-    // A number in the table, as text in CSV, and as a point of a picture.
-    let row_bytes = 60.0 * (4.0 + d + 2.0 * scene.probes.len() as f64);
-    let space = particles * (particle_bytes + pair_bytes) + nodes * node_bytes;
-    let limit = MEMORY / 1e9;
-    if space > MEMORY {
-        let problem = format!("this grid and basis need {:.1} GB of memory", space / 1e9);
-        let mut error = check.source.error("grid.cells", grid.cells.span(), problem);
-        error.allowed = format!("a grid and basis that need at most {limit:.1} GB");
-        return Err(error);
-    }
-    if steps > MOST_STEPS {
-        let problem = format!("with time.cfl and grid.cells it asks for {steps:e} steps");
-        let mut error = check.source.error("time.end", time.end.span(), problem);
-        error.allowed = format!("at most {MOST_STEPS:e} steps");
-        return Err(error);
-    }
-    if rows * row_bytes > MEMORY {
-        let problem = format!(
-            "the history of {steps:e} steps needs {:e} GB of memory",
-            rows * row_bytes / 1e9
-        );
-        let mut error = check.source.error("time.end", time.end.span(), problem);
-        error.allowed = format!("a history of at most {limit:.1} GB; see also output.every");
-        return Err(error);
-    }
-    Ok(())
 }

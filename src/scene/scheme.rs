@@ -1,0 +1,101 @@
+//! Basis and integrator of a scene: which keys each needs, and which it refuses.
+
+use super::check::Check;
+use super::file::{FileBasis, FileTime};
+use super::{GridSpec, Time};
+use crate::basis::Basis;
+use crate::fault::SceneError;
+use crate::reading::{StepEight, StressUpdate};
+use crate::time::Integrator;
+use toml::Spanned;
+
+/// The `time` table.
+pub fn time(check: &Check, file: &FileTime) -> Result<Time, Box<SceneError>> {
+    Ok(Time {
+        integrator: integrator(check, file)?,
+        cfl: check.number("time.cfl", &file.cfl, |x| x > 0.0)?,
+        end: check.number("time.end", &file.end, |x| x > 0.0)?,
+    })
+}
+
+/// The scheme with what it needs; keys that mean nothing to it are refused.
+fn integrator(check: &Check, file: &FileTime) -> Result<Integrator, Box<SceneError>> {
+    let (name, span) = (file.integrator.get_ref().as_str(), file.integrator.span());
+    let kinds = [
+        ("newmark", "time.reading"),
+        ("forward-euler", "time.stress_update"),
+        ("corrected-euler", ""),
+        ("generalized-alpha", "time.rho_b"),
+    ];
+    let own = check.choose("time.integrator", name, span.clone(), &kinds)?;
+    let given = [
+        ("time.reading", file.reading.as_ref().map(Spanned::span)),
+        ("time.stress_update", file.stress_update.as_ref().map(Spanned::span)),
+        ("time.rho_b", file.rho_b.as_ref().map(Spanned::span)),
+    ];
+    for (key, span) in given {
+        if let Some(span) = span.filter(|_| key != own) {
+            let problem = format!("it means nothing to the integrator \"{name}\"");
+            return Err(check.source.error(key, span, problem));
+        }
+    }
+    let needs = || {
+        check.source.error(own, span.clone(), format!("the integrator \"{name}\" needs this key"))
+    };
+    match own {
+        "time.reading" => {
+            let readings =
+                [("second-order", StepEight::SecondOrder), ("as-printed", StepEight::AsPrinted)];
+            let Some(text) = &file.reading else {
+                return Ok(Integrator::Newmark(StepEight::default()));
+            };
+            check.choose(own, text.get_ref(), text.span(), &readings).map(Integrator::Newmark)
+        }
+        "time.stress_update" => {
+            let orders = [
+                ("first", StressUpdate::First),
+                ("last", StressUpdate::Last),
+                ("modified-last", StressUpdate::ModifiedLast),
+            ];
+            let text = file.stress_update.as_ref().ok_or_else(needs)?;
+            check.choose(own, text.get_ref(), text.span(), &orders).map(Integrator::ForwardEuler)
+        }
+        "time.rho_b" => {
+            let rho_b = file.rho_b.as_ref().ok_or_else(needs)?;
+            let rho_b = check.number(own, rho_b, |rho_b| (0.0..=1.0).contains(&rho_b))?;
+            Ok(Integrator::GeneralizedAlpha { rho_b })
+        }
+        _ => Ok(Integrator::CorrectedEuler),
+    }
+}
+
+/// What a scene's basis needs; keys that mean nothing to it are refused.
+pub fn basis(check: &Check, file: &FileBasis, grid: &GridSpec) -> Result<Basis, Box<SceneError>> {
+    let half = |d: usize| grid.particles_per_cell.get(d).map_or(0.5, |n| 0.5 / *n as f64);
+    let lme = Basis::Lme { gamma: f64::NAN, cutoff: 1e-6 };
+    let kinds = [
+        ("linear", Basis::Linear),
+        ("ugimp", Basis::Ugimp { half_length: [half(0), half(1), half(2)] }),
+        ("lme", lme),
+        ("bspline", Basis::BSpline),
+    ];
+    let kind = check.choose("basis.kind", file.kind.get_ref(), file.kind.span(), &kinds)?;
+    let Basis::Lme { mut cutoff, .. } = kind else {
+        for (key, value) in [("basis.gamma", &file.gamma), ("basis.cutoff", &file.cutoff)] {
+            if let Some(value) = value {
+                let problem = format!("it means nothing to the basis \"{}\"", file.kind.get_ref());
+                return Err(check.source.error(key, value.span(), problem));
+            }
+        }
+        return Ok(kind);
+    };
+    let Some(gamma) = &file.gamma else {
+        let problem = "the basis \"lme\" needs this key";
+        return Err(check.source.error("basis.gamma", file.kind.span(), problem));
+    };
+    let gamma = check.number("basis.gamma", gamma, |gamma| (1e-6..=1e6).contains(&gamma))?;
+    if let Some(value) = &file.cutoff {
+        cutoff = check.number("basis.cutoff", value, |tol| (0.0..1.0).contains(&tol))?;
+    }
+    Ok(Basis::Lme { gamma, cutoff })
+}
