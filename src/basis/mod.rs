@@ -50,6 +50,8 @@ impl Basis {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scratch<const D: usize> {
     lme: Lme<D>,
+    /// The nodes that the point at hand sees.
+    nodes: Vec<usize>,
     /// λ h of each particle, from where the next search starts.
     pub lambda: Vec<SVector<f64, D>>,
 }

@@ -31,18 +31,17 @@ pub fn row<const D: usize>(
     at: &Located<D>,
     p: usize,
 ) -> Result<(), Failure> {
-    let Scratch { lme, lambda } = scratch;
+    let Scratch { lme, nodes, lambda } = scratch;
     lme.clear(true);
-    let first_entry = shape.len();
+    nodes.clear();
     for node in grid.around(at, reach) {
-        let I = grid.node(node);
         // The cell's lower corner is the base: offsets are whole numbers.
         let offset = SVector::from_fn(|d, _| at.cell[d] as f64 - node[d] as f64);
         let xi = at.xi + offset;
         let is_corner = (0..D).all(|d| node[d] == at.cell[d] || node[d] == at.cell[d] + 1);
         if is_corner || xi.dot(&xi) <= reach * reach {
             lme.push(xi, offset);
-            shape.push(I, 0.0, SVector::zeros());
+            nodes.push(grid.node(node));
         }
     }
     // The two nodes of the cell along each axis alone would give s/(1 − s).
@@ -63,8 +62,8 @@ pub fn row<const D: usize>(
         Some(last) => *last = found,
         None => lambda.push(found),
     }
-    for (n, (N, grad)) in lme.p.iter().zip(&lme.grad).enumerate() {
-        shape.set(first_entry + n, *N, grad.component_div(&grid.h));
+    for ((I, N), grad) in nodes.iter().zip(&lme.p).zip(&lme.grad) {
+        shape.push(*I, *N, grad.component_div(&grid.h));
     }
     Ok(())
 }

@@ -41,12 +41,6 @@ impl<const D: usize> Shape<D> {
         self.entry.push(Entry { I, N, grad_N });
     }
 
-    /// Writes N and ∇N of an entry that was pushed before they were known.
-    pub fn set(&mut self, entry: usize, N: f64, grad_N: SVector<f64, D>) {
-        self.entry[entry].N = N;
-        self.entry[entry].grad_N = grad_N;
-    }
-
     /// Ends the row of the current particle.
     pub fn end_row(&mut self) {
         self.start.push(self.entry.len());
