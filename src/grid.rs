@@ -3,6 +3,26 @@
 
 use nalgebra::SVector;
 
+/// All index tuples below `count`, the first axis fastest; by carrying, since a
+/// division per tuple would cost more than what is done with it.
+pub fn odometer<const D: usize>(count: [usize; D]) -> impl Iterator<Item = [usize; D]> {
+    let mut next = count.iter().all(|n| *n > 0).then_some([0; D]);
+    std::iter::from_fn(move || {
+        let now = next?;
+        let mut after = now;
+        next = None;
+        for d in 0..D {
+            after[d] += 1;
+            if after[d] < count[d] {
+                next = Some(after);
+                break;
+            }
+            after[d] = 0;
+        }
+        Some(now)
+    })
+}
+
 /// A regular grid of boxes with spacing h, in the frame of the body's lower
 /// corner: node i along an axis stands at (i − before) h.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,14 +100,7 @@ impl<const D: usize> Grid<D> {
             let highest = libm::floor(cell + at.xi[d] + radius).max(cell + 1.0).min(last);
             (low[d], count[d]) = (lowest as usize, (highest - lowest) as usize + 1);
         }
-        (0..count.iter().product()).map(move |n| {
-            let mut rest = n;
-            std::array::from_fn(|d| {
-                let i = low[d] + rest % count[d];
-                rest /= count[d];
-                i
-            })
-        })
+        odometer(count).map(move |n| std::array::from_fn(|d| low[d] + n[d]))
     }
 
     /// The coordinate along axis d of the nodes with index i (m).

@@ -15,7 +15,7 @@
 //! cut-off such a point is on the side of its cell, and is served.
 #![allow(non_snake_case)]
 
-use crate::continuum::law::outer;
+use crate::continuum::law::{applied, outer};
 use nalgebra::{SMatrix, SVector};
 use thiserror::Error;
 
@@ -180,9 +180,10 @@ impl<const D: usize> Lme<D> {
         faces: &Faces<D>,
     ) -> Result<(SVector<f64, D>, Option<usize>), Failure> {
         self.shares.clear();
+        let inside = *faces == [0.0; D];
         let (mut nearest, mut least) = (None, f64::INFINITY);
         for (n, xi) in self.xi.iter().enumerate() {
-            if (0..D).all(|d| faces[d] == 0.0 || xi[d] == 0.0) {
+            if inside || (0..D).all(|d| faces[d] == 0.0 || xi[d] == 0.0) {
                 self.shares.push(n);
                 let square = xi.dot(xi);
                 if square < least {
@@ -194,7 +195,9 @@ impl<const D: usize> Lme<D> {
         let nearest = nearest.ok_or(Failure::OutsideHull)?;
         let xi_0 = self.xi[nearest];
         let on_node = (least == 0.0).then_some(nearest);
-        self.shares.retain(|n| Some(*n) != on_node);
+        if on_node.is_some() {
+            self.shares.retain(|n| Some(*n) != on_node);
+        }
         self.a.clear();
         self.a.extend(self.shares.iter().map(|n| self.offset[*n] - self.offset[nearest]));
         self.reach = self.a.iter().map(|a| a.amax()).fold(0.0, f64::max);
@@ -409,7 +412,7 @@ impl<const D: usize> Lme<D> {
         self.grad.resize(self.xi.len(), SVector::zeros());
         for (p, n) in self.weight.iter().zip(&self.shares) {
             self.p[*n] = *p;
-            self.grad[*n] = -(inverse * self.xi[*n]) * *p;
+            self.grad[*n] = -applied(&inverse, &self.xi[*n]) * *p;
         }
         if let Some(node) = on_node {
             // Its exponent is 0, the others sum up to S: shares 1 and S of 1 + S.

@@ -3,7 +3,7 @@
 #![allow(non_snake_case)]
 
 use crate::continuum::shape::Shape;
-use crate::grid::Grid;
+use crate::grid::{Grid, odometer};
 use nalgebra::SVector;
 
 /// The functions of one axis at one coordinate: for each node the index along
@@ -30,14 +30,7 @@ impl Line {
 /// One row of the table from one `Line` for each axis: N_Ip = Π_d N_d, and
 /// ∂N_Ip/∂x_i has the slope in place of factor i. The first axis runs fastest.
 pub fn row<const D: usize>(shape: &mut Shape<D>, grid: &Grid<D>, lines: &[Line; D]) {
-    let count: usize = lines.iter().map(|line| line.len).product();
-    for n in 0..count {
-        let mut rest = n;
-        let at: [usize; D] = std::array::from_fn(|d| {
-            let k = rest % lines[d].len;
-            rest /= lines[d].len;
-            k
-        });
+    for at in odometer::<D>(std::array::from_fn(|d| lines[d].len)) {
         let I = grid.node(std::array::from_fn(|d| lines[d].node[at[d]]));
         let N_Ip = (0..D).map(|d| lines[d].N[at[d]]).product();
         let grad_N_Ip = SVector::from_fn(|i, _| {

@@ -8,6 +8,11 @@ pub fn outer<const D: usize>(a: &SVector<f64, D>, b: &SVector<f64, D>) -> SMatri
     SMatrix::from_fn(|i, j| a[i] * b[j])
 }
 
+/// A·b, row by row.
+pub fn applied<const D: usize>(a: &SMatrix<f64, D, D>, b: &SVector<f64, D>) -> SVector<f64, D> {
+    SVector::from_fn(|i, _| (0..D).map(|j| a[(i, j)] * b[j]).sum())
+}
+
 // ANCHOR: strain_rate
 /// (2): ε̇ = ∇ˢv = ½ (∇v + ∇ᵀv).
 ///

@@ -2,7 +2,7 @@
 //! with the lumped mass matrix of (18).
 #![allow(non_snake_case)]
 
-use super::law::outer;
+use super::law::{applied, outer};
 use super::shape::Shape;
 use super::state::{Nodes, Particles};
 use nalgebra::{SMatrix, SVector};
@@ -36,7 +36,7 @@ pub fn internal_force<const D: usize>(
 ) {
     for (I, p, _, grad_N_Ip) in shape.pairs() {
         let volume = particle.m[p] / particle.rho[p];
-        node.f[I] -= particle.sigma[p] * grad_N_Ip * volume;
+        node.f[I] -= applied(&particle.sigma[p], grad_N_Ip) * volume;
     }
 }
 // ANCHOR_END: internal_force
