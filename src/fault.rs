@@ -86,14 +86,6 @@ pub struct SceneError {
 }
 
 impl SceneError {
-    /// Line and column, counted from 1.
-    pub fn line_column(&self) -> (usize, usize) {
-        let before = &self.text[..self.span.start.min(self.text.len())];
-        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-        let line = before.matches('\n').count() + 1;
-        (line, before[line_start..].chars().count() + 1)
-    }
-
     /// The error as a picture of the offending line.
     pub fn render(&self, renderer: &Renderer) -> String {
         let title = match self.key.as_str() {

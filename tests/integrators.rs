@@ -24,15 +24,6 @@ const SCHEMES: [(&str, &[&str]); 7] = [
     ("generalized-α (0.8)", &["time.integrator=generalized-alpha", "time.rho_b=0.8"]),
 ];
 
-const BASES: [(&str, &[&str]); 6] = [
-    ("linear", &[]),
-    ("ugimp", &["basis.kind=ugimp"]),
-    ("bspline", &["basis.kind=bspline"]),
-    ("lme γ = 0.8", &["basis.kind=lme", "basis.gamma=0.8"]),
-    ("lme γ = 1.8", &["basis.kind=lme", "basis.gamma=1.8"]),
-    ("lme γ = 4", &["basis.kind=lme", "basis.gamma=4"]),
-];
-
 /// v and σ of all particles after each of `steps` steps of the bar, thrown so
 /// gently that the particles stay in place to 1e-12 of a cell.
 fn frozen(sets: &[&str], steps: usize) -> Vec<(Vec<f64>, Vec<f64>)> {

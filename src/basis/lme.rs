@@ -15,9 +15,12 @@
 //! cut-off such a point is on the side of its cell, and is served.
 #![allow(non_snake_case)]
 
+mod weights;
+
 use crate::continuum::law::{applied, outer};
 use nalgebra::{SMatrix, SVector};
 use thiserror::Error;
+use weights::{FEW, Moments};
 
 /// Iterations after which the search for λ is given up.
 const MOST_ITERATIONS: usize = 200;
@@ -25,9 +28,6 @@ const MOST_ITERATIONS: usize = 200;
 /// Largest relative change of a p_I in the last step of Newton's method. The
 /// step is then applied to the p_I themselves; what is left is its square.
 const CLOSE: f64 = 1e-8;
-
-/// Up to this many cells the exponentials are factorised on a grid.
-const FEW: usize = 6;
 
 /// Why there is no λ.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -73,28 +73,6 @@ pub struct Lme<const D: usize> {
     /// exp(−γk²) for k = 0, 1, … and the γ it is for.
     gauss: [f64; FEW + 1],
     gauss_gamma: f64,
-}
-
-/// Z, r and J at one μ.
-struct Moments<const D: usize> {
-    /// The largest exponent, and Z with that taken off.
-    largest: f64,
-    Z: f64,
-    /// μ·ξ_0.
-    tilt: f64,
-    /// Σ p_I a_I.
-    mean: SVector<f64, D>,
-    /// (37): r = Σ p_I ξ_I.
-    r: SVector<f64, D>,
-    /// (36): J = ∂r/∂λ = Σ p_I (ξ_I − r) ⊗ (ξ_I − r).
-    J: SMatrix<f64, D, D>,
-}
-
-impl<const D: usize> Moments<D> {
-    /// log Z + μ·ξ_0, what the right μ minimises.
-    fn phi(&self) -> f64 {
-        self.largest + libm::log(self.Z) + self.tilt
-    }
 }
 
 /// Axes along which x lies on a flat side of the hull, with the direction to
@@ -205,89 +183,6 @@ impl<const D: usize> Lme<D> {
         self.weight.resize(self.a.len(), 0.0);
         Ok((xi_0, on_node))
     }
-
-    // ANCHOR: lme_moments
-    /// (31) (32) at μ, with the largest exponent taken off so that none
-    /// overflows; then r and J centred at the mean, so that nothing cancels.
-    fn moments(
-        &mut self,
-        gamma: f64,
-        mu: &SVector<f64, D>,
-        xi_0: &SVector<f64, D>,
-        faces: &Faces<D>,
-    ) -> Moments<D> {
-        let largest = match self.factorised(gamma, mu) {
-            true => 0.0,
-            false => self.exponentiated(gamma, mu),
-        };
-        let (mut Z, mut mean) = (0.0, SVector::zeros());
-        for (p, a) in self.weight.iter().zip(&self.a) {
-            Z += *p;
-            mean += a * *p;
-        }
-        mean /= Z;
-        let mut J = SMatrix::zeros();
-        for (p, a) in self.weight.iter_mut().zip(&self.a) {
-            *p /= Z;
-            let from_mean = a - mean;
-            J += outer(&from_mean, &from_mean) * *p;
-        }
-        fill_faces(&mut J, faces);
-        (self.largest, self.Z) = (largest, Z);
-        Moments { largest, Z, tilt: mu.dot(xi_0), mean, r: xi_0 + mean, J }
-    }
-    // ANCHOR_END: lme_moments
-
-    /// exp(f_I − the largest f) in `weight`; returns the largest f.
-    fn exponentiated(&mut self, gamma: f64, mu: &SVector<f64, D>) -> f64 {
-        let mut largest = f64::NEG_INFINITY;
-        for (p, a) in self.weight.iter_mut().zip(&self.a) {
-            *p = exponent(gamma, mu, a);
-            largest = largest.max(*p);
-        }
-        for p in &mut self.weight {
-            *p = libm::exp(*p - largest);
-        }
-        self.exponentials += self.a.len() as u64;
-        largest
-    }
-
-    // ANCHOR: lme_factorised
-    /// exp f_I in `weight` with one exponential for each axis, where all a_I are
-    /// small whole numbers: exp((μ − γa)a) = exp(−γa²) exp(μ)^a. Powers by
-    /// multiplication lose less than a digit of 1e-15 there. `false`, and
-    /// nothing done, elsewhere.
-    fn factorised(&mut self, gamma: f64, mu: &SVector<f64, D>) -> bool {
-        const MOST: f64 = 300.0;
-        let reach = self.reach;
-        let K = FEW as f64;
-        if !(self.on_grid && reach <= K && gamma * reach * reach < MOST && mu.amax() * reach < MOST)
-        {
-            return false;
-        }
-        if self.gauss_gamma != gamma {
-            self.gauss = std::array::from_fn(|k| libm::exp(-gamma * (k * k) as f64));
-            self.gauss_gamma = gamma;
-            self.exponentials += self.gauss.len() as u64;
-        }
-        let mut factor = [[0.0; 2 * FEW + 1]; D];
-        for d in 0..D {
-            let (up, mut power) = (libm::exp(mu[d]), 1.0);
-            let (down, mut inverse) = (1.0 / up, 1.0);
-            for k in 0..=reach as usize {
-                factor[d][FEW + k] = self.gauss[k] * power;
-                factor[d][FEW - k] = self.gauss[k] * inverse;
-                power *= up;
-                inverse *= down;
-            }
-        }
-        self.exponentials += D as u64;
-        for (p, a) in self.weight.iter_mut().zip(&self.a) {
-            *p = (0..D).map(|d| factor[d][(a[d] + K) as usize]).product();
-        }
-        true
-    }
-    // ANCHOR_END: lme_factorised
 
     // ANCHOR: lme_newton
     /// Solves r(λ) = 0 by Newton's method, damped while a step would change some
@@ -459,12 +354,6 @@ impl<const D: usize> Lme<D> {
         Ok(())
     }
     // ANCHOR_END: lme_gradients
-}
-
-/// f_I = −γ|a|² + μ·a, axis by axis: near the solution μ_d − γ a_d is the small
-/// difference of large numbers that are exact.
-fn exponent<const D: usize>(gamma: f64, mu: &SVector<f64, D>, a: &SVector<f64, D>) -> f64 {
-    (0..D).map(|d| (mu[d] - gamma * a[d]) * a[d]).sum()
 }
 
 /// On a face J has an empty row and column; a 1 there leaves the rest alone.

@@ -96,3 +96,13 @@ pub fn smooth_run(sets: &[&str], steps: usize) -> (Vec<f64>, Vec<f64>) {
     let u = state.particle.x.iter().zip(&start).map(|(x, start)| x[0] - start).collect();
     (u, state.particle.v.iter().map(|v| v[0]).collect())
 }
+
+/// Every basis of the bar, with its name in tables.
+pub const BASES: [(&str, &[&str]); 6] = [
+    ("linear", &[]),
+    ("ugimp", &["basis.kind=ugimp"]),
+    ("bspline", &["basis.kind=bspline"]),
+    ("lme γ = 0.8", &["basis.kind=lme", "basis.gamma=0.8"]),
+    ("lme γ = 1.8", &["basis.kind=lme", "basis.gamma=1.8"]),
+    ("lme γ = 4", &["basis.kind=lme", "basis.gamma=4"]),
+];
