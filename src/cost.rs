@@ -13,19 +13,31 @@ pub struct Cost {
     pub exponentials: u64,
     /// Iterations of Newton's method.
     pub newton_iterations: u64,
+    /// Body forces evaluated: one per particle and force balance.
+    pub body_forces: u64,
+    /// Tractions evaluated: one per loaded particle and force balance.
+    pub tractions: u64,
+    /// Factorisations of the consistent mass matrix.
+    pub factorizations: u64,
+    /// Solutions with it, one per component.
+    pub solves: u64,
     /// Bytes of state that one particle carries.
     pub bytes_per_particle: u64,
 }
 
 impl Cost {
     /// Every counter with its name, in the order of `cost.csv`.
-    pub fn named(&self) -> [(&'static str, u64); 6] {
+    pub fn named(&self) -> [(&'static str, u64); 10] {
         [
             ("steps", self.steps),
             ("basis_evaluations", self.basis_evaluations),
             ("particle_node_pairs", self.particle_node_pairs),
             ("exponentials", self.exponentials),
             ("newton_iterations", self.newton_iterations),
+            ("body_forces", self.body_forces),
+            ("tractions", self.tractions),
+            ("factorizations", self.factorizations),
+            ("solves", self.solves),
             ("bytes_per_particle", self.bytes_per_particle),
         ]
     }

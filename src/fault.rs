@@ -47,7 +47,13 @@ pub enum Breakdown {
     #[error("local max-ent cannot serve particle {particle} at {moment}: {failure}")]
     NoBasis { particle: usize, moment: Moment, failure: Failure },
     #[error(
-        "the run blew up at {moment}: its energy is {ratio:e} times that of the start, and \
+        "the consistent mass matrix is singular at {moment}: {particles} particles do not \
+         determine the velocities of {nodes} nodes; give the cells more particles, or set \
+         mass = \"lumped\""
+    )]
+    SingularMass { particles: usize, nodes: usize, moment: Moment },
+    #[error(
+        "the run blew up at {moment}: its energy is {ratio:e} times what start and loads gave it, and \
          particle {particle} holds the largest share"
     )]
     Diverged { particle: usize, moment: Moment, ratio: f64 },
@@ -61,6 +67,7 @@ impl Breakdown {
             | Breakdown::Inverted { moment, .. }
             | Breakdown::NotFinite { moment, .. }
             | Breakdown::NoBasis { moment, .. }
+            | Breakdown::SingularMass { moment, .. }
             | Breakdown::Diverged { moment, .. } => *moment,
         }
     }

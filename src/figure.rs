@@ -254,6 +254,61 @@ pub fn local_max_ent(gammas: &[f64]) -> Result<String, Failure> {
     Ok(own_ids(&kuva::backend::svg::SvgBackend.render_scene(&figure.render())))
 }
 
+/// The particles of a 2D scene, or of a 3D one seen along z, in six classes of
+/// speed.
+pub fn particles(scene: &Scene, table: &Table, t: f64) -> String {
+    const CLASSES: usize = 6;
+    let column = |name: &str| table.column(name).unwrap_or_default();
+    let (x, y) = (column("position_x"), column("position_y"));
+    let mut speed = vec![0.0; x.len()];
+    for axis in ["x", "y", "z"] {
+        for (square, v) in speed.iter_mut().zip(column(&format!("velocity_{axis}"))) {
+            *square += v * v;
+        }
+    }
+    let speed: Vec<f64> = speed.into_iter().map(libm::sqrt).collect();
+    let top = largest(&speed);
+    let (per_v, v_prefix) = prefix(top);
+    let class = |v: f64| {
+        if top > 0.0 { ((v / top * CLASSES as f64) as usize).min(CLASSES - 1) } else { 0 }
+    };
+    let bound = |n: usize| format!("{:.3}", n as f64 / CLASSES as f64 * top * per_v);
+    let plots: Vec<Plot> = (0..CLASSES)
+        .rev()
+        .map(|n| {
+            let own = (0..x.len()).filter(|p| class(speed[*p]) == n);
+            ScatterPlot::new()
+                .with_data(own.map(|p| (x[p], y[p])))
+                .with_size(2.2)
+                .with_color(ColorMap::Viridis.map((n as f64 + 0.5) / CLASSES as f64))
+                .with_legend(format!("{} to {} {v_prefix}m/s", bound(n), bound(n + 1)))
+                .into()
+        })
+        .collect();
+    // The body's box, and whatever has left it.
+    let range = |d: usize, list: &[f64]| {
+        let (low, high) = (scene.body.origin[d], scene.body.origin[d] + scene.body.length[d]);
+        (list.iter().fold(low, |a, b| a.min(*b)), list.iter().fold(high, |a, b| a.max(*b)))
+    };
+    let (x_range, y_range) = (range(0, &x), range(1, &y));
+    let layout = Layout::auto_from_plots(&plots)
+        .with_width(640.0)
+        .with_height(480.0)
+        .with_equal_aspect()
+        .with_x_axis_min(x_range.0)
+        .with_x_axis_max(x_range.1)
+        .with_y_axis_min(y_range.0)
+        .with_y_axis_max(y_range.1)
+        .with_title(format!("{}: speed of the particles at t = {} s", scene.title, tick(t)))
+        .with_x_label("x [m]")
+        .with_y_label("y [m]")
+        .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_title_size(15)
+        .with_legend_position(LegendPosition::OutsideRightTop);
+    own_ids(&render_to_svg(plots, layout))
+}
+
 /// Numbers the clip paths of a picture from 1. The library numbers them through
 /// all pictures of a process, so that the same picture would differ.
 fn own_ids(svg: &str) -> String {

@@ -21,7 +21,7 @@
 //! | doubts and misprints | [`reading`] | `tests/convergence.rs` |
 //!
 //! Around the paper stand [`scene`] (what to compute), [`model`] and [`run`]
-//! (the time loop), [`history`], [`summary`], [`figure`]
+//! (the time loop), [`history`], [`summary`], [`figure`], [`vtk`]
 //! and [`report`] (what comes out), [`points`] (values at points),
 //! [`cost`] (what it took) and [`fault`] (what can go wrong).
 
@@ -42,3 +42,4 @@ pub mod run;
 pub mod scene;
 pub mod summary;
 pub mod time;
+pub mod vtk;

@@ -45,6 +45,24 @@ pub fn strain_energy<const D: usize>(particle: &Particles<D>, law: &LinearElasti
 }
 // ANCHOR_END: energy
 
+/// Σ_p m_p (x_i v_j − x_j v_i) about the body's lower corner (kg m²/s): one
+/// number in 2D, three in 3D (for x, y, z), none in 1D.
+pub fn angular_momentum<const D: usize>(particle: &Particles<D>) -> Vec<f64> {
+    let planes: &[(usize, usize)] = match D {
+        1 => &[],
+        2 => &[(0, 1)],
+        _ => &[(1, 2), (2, 0), (0, 1)],
+    };
+    let about = |&(i, j): &(usize, usize)| {
+        let arm = |p: usize| {
+            let (x, v) = (&particle.x[p], &particle.v[p]);
+            particle.m[p] * (x[i] * v[j] - x[j] * v[i])
+        };
+        (0..particle.len()).map(arm).sum()
+    };
+    planes.iter().map(about).collect()
+}
+
 /// Σ_p m_p v_p (kg m/s).
 pub fn momentum<const D: usize>(particle: &Particles<D>) -> SVector<f64, D> {
     let mut sum = SVector::zeros();

@@ -4,10 +4,13 @@
 
 use crate::basis::{Basis, Scratch, support};
 use crate::continuum::law::LinearElastic;
+use crate::continuum::loads::{BodyForce, Loads, Traction};
+use crate::continuum::mass::ConsistentMass;
 use crate::continuum::shape::Shape;
 use crate::continuum::state::{Nodes, Particles, State};
-use crate::grid::Grid;
-use crate::scene::{Body, Scene};
+use crate::exact::Exact;
+use crate::grid::{Grid, odometer};
+use crate::scene::{Ball, Body, Mass, Motion, Scene};
 use crate::time::Integrator;
 use nalgebra::SVector;
 
@@ -23,6 +26,8 @@ pub struct Model<const D: usize> {
     /// Node I has zero velocity component i.
     pub fixed: Vec<(usize, usize)>,
     pub integrator: Integrator,
+    pub loads: Option<Loads<D>>,
+    pub mass: Mass,
     /// Δt (s).
     pub dt: f64,
     /// N_t, the number of time steps.
@@ -104,6 +109,8 @@ impl<const D: usize> Model<D> {
             basis: scene.basis,
             law: LinearElastic::new(scene.body.youngs_modulus, scene.body.poisson_ratio),
             integrator: scene.time.integrator,
+            loads: loads(scene, &lattice::<D>(scene)),
+            mass: scene.mass,
             dt: scene.time.end / steps,
             steps: steps as usize,
         }
@@ -113,33 +120,102 @@ impl<const D: usize> Model<D> {
     /// body, each with an equal share of the cell's mass (unit thickness in
     /// the missing directions), moving as its region says.
     pub fn initial_state(&self, scene: &Scene) -> State<D> {
-        let per_cell: [usize; D] = std::array::from_fn(|d| scene.grid.particles_per_cell[d]);
-        let along: [usize; D] = std::array::from_fn(|d| scene.grid.cells[d] * per_cell[d]);
-        let count: usize = along.iter().product();
-        let mut x: Vec<SVector<f64, D>> = Vec::with_capacity(count);
-        for p in 0..count {
-            let mut rest = p;
-            x.push(SVector::from_fn(|d, _| {
-                let n = rest % along[d];
-                rest /= along[d];
-                let (cell, within) = (n / per_cell[d], n % per_cell[d]);
-                let xi = (within as f64 + 0.5) / per_cell[d] as f64;
-                (cell as f64 + xi) * self.grid.h[d]
-            }));
-        }
-        let share: f64 = (0..D).map(|d| self.grid.h[d] / per_cell[d] as f64).product();
-        let rho = scene.body.density;
+        let x: Vec<SVector<f64, D>> = lattice(scene).into_iter().map(|place| place.x).collect();
+        let per_cell = |d: usize| scene.grid.particles_per_cell[d] as f64;
+        let share: f64 = (0..D).map(|d| self.grid.h[d] / per_cell(d)).product();
+        let (count, rho) = (x.len(), scene.body.density);
         let mut particle = Particles::at_rest(x, rho * share, rho);
+        let exact = Exact::of(scene);
         for p in 0..particle.len() {
-            let x_p = particle.x[p].as_slice();
-            if let Some(region) = scene.initial_velocity.iter().find(|r| r.contains(x_p)) {
-                particle.v[p] = SVector::from_fn(|d, _| region.velocity[d]);
+            let x_p = particle.x[p];
+            match (&scene.motion, &exact) {
+                (Motion::Regions(regions), _) => {
+                    if let Some(region) = regions.iter().find(|r| r.contains(x_p.as_slice())) {
+                        particle.v[p] = SVector::from_fn(|d, _| region.velocity[d]);
+                    }
+                }
+                (_, Ok(exact)) => particle.v[p] = SVector::repeat(exact.at(x_p[0], 0.0).velocity),
+                // A mode of more than one dimension is refused with the scene.
+                (_, Err(_)) => {}
             }
         }
         let shape = Shape::blank(count);
         let node = Nodes::blank(self.grid.nodes());
-        State { particle, node, shape, scratch: Scratch::default() }
+        let mass = match self.mass {
+            Mass::Lumped => None,
+            Mass::Consistent => Some(ConsistentMass::blank(node.len(), &self.fixed)),
+        };
+        State { particle, node, shape, mass, scratch: Scratch::default() }
     }
+}
+
+/// Where a particle stands at the start.
+struct Place<const D: usize> {
+    x: SVector<f64, D>,
+    /// Its number along each axis.
+    number: [usize; D],
+}
+
+/// Particles at equal distances in every cell of the body's box; with balls
+/// those inside one of them.
+fn lattice<const D: usize>(scene: &Scene) -> Vec<Place<D>> {
+    let per_cell: [usize; D] = std::array::from_fn(|d| scene.grid.particles_per_cell[d]);
+    let along = std::array::from_fn(|d| scene.grid.cells[d] * per_cell[d]);
+    let place = |number: [usize; D]| Place {
+        number,
+        x: SVector::from_fn(|d, _| {
+            let (cell, within) = (number[d] / per_cell[d], number[d] % per_cell[d]);
+            let xi = (within as f64 + 0.5) / per_cell[d] as f64;
+            (cell as f64 + xi) * (scene.body.length[d] / scene.grid.cells[d] as f64)
+        }),
+    };
+    let balls = &scene.body.balls;
+    let material = |place: &Place<D>| {
+        let inside = |ball: &Ball| {
+            let r: SVector<f64, D> = SVector::from_fn(|d, _| place.x[d] - ball.centre[d]);
+            r.dot(&r) <= ball.radius * ball.radius
+        };
+        balls.is_empty() || balls.iter().any(inside)
+    };
+    odometer(along).map(place).filter(material).collect()
+}
+
+/// The loads that the scene declares, tied to its particles.
+fn loads<const D: usize>(scene: &Scene, lattice: &[Place<D>]) -> Option<Loads<D>> {
+    let uniform = scene.body_force.as_ref().map(|body| BodyForce::Uniform {
+        b: SVector::from_fn(|d, _| body.acceleration[d]),
+        ramp: body.ramp,
+    });
+    let manufactured = match Exact::of(scene) {
+        Ok(Exact::Manufactured(solution)) => Some(BodyForce::Manufactured {
+            solution,
+            X: lattice.iter().map(|place| place.x[0]).collect(),
+        }),
+        _ => None,
+    };
+    let along = |d: usize| scene.grid.cells[d] * scene.grid.particles_per_cell[d];
+    let distance = |d: usize| scene.body.length[d] / along(d) as f64;
+    let traction = scene.traction.as_ref().map(|load| {
+        let mut layer: Vec<(usize, SVector<f64, D>)> = Vec::new();
+        for (p, place) in lattice.iter().enumerate() {
+            let mut force = SVector::<f64, D>::zeros();
+            for axis in 0..D {
+                let area: f64 = (0..D).filter(|d| *d != axis).map(distance).product();
+                for (upper, end) in [0, along(axis) - 1].into_iter().enumerate() {
+                    if place.number[axis] == end {
+                        let t: &[f64] = &load.sides[axis][upper];
+                        force += SVector::<f64, D>::from_fn(|d, _| t[d]) * area;
+                    }
+                }
+            }
+            if force != SVector::<f64, D>::zeros() {
+                layer.push((p, force));
+            }
+        }
+        Traction { layer, ramp: load.ramp }
+    });
+    let body = uniform.or(manufactured);
+    (body.is_some() || traction.is_some()).then_some(Loads { body, traction })
 }
 
 /// Nodes on or beyond a side with fixed components.

@@ -7,11 +7,15 @@ use crate::history::{csv, prepare, shortest, write_all};
 use crate::run::{Stopped, run};
 use crate::scene::Scene;
 use crate::summary::{self, Line};
+use crate::vtk;
 use std::path::Path;
 use std::time::Instant;
 
 /// The history of a run that broke down.
 const FAILED: &str = "history.failed.csv";
+
+/// The particles at the end, in 2D and 3D.
+const PICTURE: &str = "particles.svg";
 
 /// Files of every complete run, besides one SVG for each probe.
 const FILES: [&str; 4] = ["history.csv", "particles.csv", "summary.csv", "cost.csv"];
@@ -19,7 +23,8 @@ const FILES: [&str; 4] = ["history.csv", "particles.csv", "summary.csv", "cost.c
 /// Runs `scene` and writes its results into `dir`; returns the summary.
 ///
 /// A complete run leaves `history.csv`, `particles.csv`, `summary.csv`,
-/// `cost.csv` and `<probe>.svg`; one that breaks down leaves only
+/// `cost.csv` and `<probe>.svg`, in 2D and 3D also `particles.svg` and, if asked
+/// for, the series for ParaView; one that breaks down leaves only
 /// `history.failed.csv`. Either way the other kind of an earlier run goes.
 ///
 /// Errors: [`Fault::Write`]; [`Fault::Run`] when the run breaks down.
@@ -47,6 +52,11 @@ pub fn run_into(
         let picture = figure::probe(scene, probe, &outcome.history);
         files.push((format!("{}.svg", probe.name), picture.into_bytes()));
     }
+    if scene.dimension() > 1 {
+        let picture = figure::particles(scene, &outcome.particles, scene.time.end);
+        files.push((PICTURE.to_string(), picture.into_bytes()));
+    }
+    files.extend(vtk::files(&outcome.frames)?);
     let mut stale = earlier(dir);
     stale.push(FAILED.to_string());
     write_all(dir, &files, &stale)?;
@@ -91,6 +101,10 @@ fn earlier(dir: &Path) -> Vec<String> {
     let columns = history.lines().next().unwrap_or("").split(',');
     let plain = |name: &&str| name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     files.extend(columns.filter(plain).map(|name| format!("{name}.svg")));
+    files.extend([PICTURE, "particles.pvd"].map(String::from));
+    let names = std::fs::read_dir(dir).into_iter().flatten().flatten();
+    let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    files.extend(names.filter(|name| vtk::is_frame(name)));
     files
 }
 

@@ -7,12 +7,13 @@ use crate::fault::{Breakdown, Moment};
 use crate::history::Table;
 use crate::measure;
 use crate::model::Model;
-use crate::scene::{Quantity, Scene};
+use crate::scene::{Motion, Quantity, Scene};
 use crate::time;
 use nalgebra::SVector;
 
-/// Total energy may grow to this multiple of its start before a run counts as
-/// blown up. A stable run of an undriven elastic body keeps it near 1.
+/// Total energy may grow to this multiple of what was there at the start and
+/// what loads have brought before a run counts as blown up. A stable run of an
+/// elastic body keeps it near 1 or below.
 const BLOW_UP: f64 = 10.0;
 
 /// What a run gives.
@@ -22,6 +23,8 @@ pub struct Outcome {
     pub history: Table,
     /// The last state, one row for each particle.
     pub particles: Table,
+    /// The particles at the recorded steps, if the scene asks for them.
+    pub frames: Vec<Frame>,
     pub cost: Cost,
     /// Δt (s).
     pub dt: f64,
@@ -44,12 +47,21 @@ fn per_axis(name: &str, dimension: usize) -> Vec<String> {
     }
 }
 
-/// `step`, `t`, energies (J), momentum (kg m/s), and each probe followed by its
+/// `step`, `t`, energies and, with loads, their work (J), momentum (kg m/s), from
+/// 2D on angular momentum (kg m²/s), and each probe followed by its
 /// exact value where the scene has an exact solution.
 pub fn history_columns(scene: &Scene, with_exact: bool) -> Vec<String> {
     let mut columns: Vec<String> =
         ["step", "t", "kinetic_energy", "strain_energy"].map(String::from).to_vec();
+    if loaded(scene) {
+        columns.push("work".to_string());
+    }
     columns.extend(per_axis("momentum", scene.dimension()));
+    match scene.dimension() {
+        1 => {}
+        2 => columns.push("angular_momentum".to_string()),
+        _ => columns.extend(per_axis("angular_momentum", 3)),
+    }
     for probe in &scene.probes {
         columns.push(probe.name.clone());
         if with_exact {
@@ -57,6 +69,12 @@ pub fn history_columns(scene: &Scene, with_exact: bool) -> Vec<String> {
         }
     }
     columns
+}
+
+/// True for a scene on which forces act from outside.
+pub fn loaded(scene: &Scene) -> bool {
+    let manufactured = matches!(scene.motion, Motion::Manufactured { .. });
+    manufactured || scene.body_force.is_some() || scene.traction.is_some()
 }
 
 /// Runs a scene to its end; `progress` hears the number of every finished step.
@@ -84,9 +102,11 @@ fn run_in<const D: usize>(
     match march(scene, &model, &mut state, &mut recorder, &mut cost, progress) {
         Err(breakdown) => Err(Box::new(Stopped { breakdown, history: recorder.history })),
         Ok(()) => {
-            let reference = model.initial_state(scene).particle.x;
+            let reference = recorder.reference;
+            let end = model.steps as f64 * model.dt;
             Ok(Outcome {
-                particles: last_state(scene, &model, &state.particle, &reference, &recorder.exact),
+                particles: table(scene, &state.particle, &reference, &recorder.exact, end),
+                frames: recorder.frames,
                 history: recorder.history,
                 cost,
                 dt: model.dt,
@@ -104,12 +124,14 @@ fn march<const D: usize>(
     progress: &mut dyn FnMut(usize),
 ) -> Result<(), Breakdown> {
     time::start(state, model, cost)?;
-    recorder.record(&state.particle, model, Moment::START)?;
+    recorder.load(&state.particle, model, Moment::START);
+    recorder.record(scene, &state.particle, model, Moment::START)?;
     for step in 1..=model.steps {
         let moment = Moment { step, time: step as f64 * model.dt };
         time::advance(state, model, moment, cost)?;
+        recorder.load(&state.particle, model, moment);
         if step % scene.every == 0 || step == model.steps {
-            recorder.record(&state.particle, model, moment)?;
+            recorder.record(scene, &state.particle, model, moment)?;
         }
         progress(step);
     }
@@ -131,6 +153,32 @@ struct Recorder<const D: usize> {
     exact: Option<Exact>,
     /// Total energy at the start (J).
     energy: f64,
+    /// What the loads do; `None` without loads.
+    work: Option<Work>,
+    /// The particles at the recorded steps, if asked for.
+    frames: Vec<Frame>,
+    /// Where the particles stood at t = 0 (m).
+    reference: Vec<SVector<f64, D>>,
+}
+
+/// The work of the loads so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Work {
+    /// ∫ P dt by the trapezoidal rule (J).
+    sum: f64,
+    /// ∫ |P| dt, what the loads have moved to and fro (J).
+    moved: f64,
+    /// P at the step before (W).
+    power: f64,
+}
+
+/// The particles at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// (s).
+    pub time: f64,
+    /// One row for each particle.
+    pub particles: Table,
 }
 
 impl<const D: usize> Recorder<D> {
@@ -149,11 +197,27 @@ impl<const D: usize> Recorder<D> {
             ),
             exact,
             energy: 0.0,
+            work: loaded(scene).then_some(Work::default()),
+            frames: Vec::new(),
+            reference: particle.x.clone(),
+        }
+    }
+
+    /// Adds the work of the loads over the step that ends at `moment`.
+    fn load(&mut self, particle: &Particles<D>, model: &Model<D>, moment: Moment) {
+        if let (Some(work), Some(loads)) = (&mut self.work, &model.loads) {
+            let power = loads.power(particle, moment.time);
+            if moment.step > 0 {
+                work.sum += 0.5 * model.dt * (work.power + power);
+                work.moved += 0.5 * model.dt * (work.power.abs() + power.abs());
+            }
+            work.power = power;
         }
     }
 
     fn record(
         &mut self,
+        scene: &Scene,
         particle: &Particles<D>,
         model: &Model<D>,
         moment: Moment,
@@ -167,19 +231,26 @@ impl<const D: usize> Recorder<D> {
         if moment.step == 0 {
             self.energy = kinetic + strain;
         }
-        if self.energy > 0.0 && kinetic + strain > BLOW_UP * self.energy {
+        let available = self.energy + self.work.map_or(0.0, |work| work.moved);
+        if available > 0.0 && kinetic + strain > BLOW_UP * available {
             return Err(Breakdown::Diverged {
                 particle: most_energetic(particle, model),
                 moment,
-                ratio: (kinetic + strain) / self.energy,
+                ratio: (kinetic + strain) / available,
             });
         }
         self.history.push(moment.step as f64);
         self.history.push(moment.time);
         self.history.push(kinetic);
         self.history.push(strain);
+        if let Some(work) = self.work {
+            self.history.push(work.sum);
+        }
         for p_i in measure::momentum(particle).iter() {
             self.history.push(*p_i);
+        }
+        for l_i in measure::angular_momentum(particle) {
+            self.history.push(l_i);
         }
         for follow in &self.follow {
             let p = follow.particle;
@@ -196,6 +267,10 @@ impl<const D: usize> Recorder<D> {
                     Quantity::Displacement(_) => fields.displacement,
                 });
             }
+        }
+        if scene.vtk {
+            let particles = table(scene, particle, &self.reference, &self.exact, moment.time);
+            self.frames.push(Frame { time: moment.time, particles });
         }
         Ok(())
     }
@@ -224,13 +299,13 @@ fn most_energetic<const D: usize>(particle: &Particles<D>, model: &Model<D>) -> 
     (0..particle.len()).max_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap_or(0)
 }
 
-/// `particles.csv`: every particle in the scene's own coordinates.
-fn last_state<const D: usize>(
+/// `particles.csv`: every particle in the scene's own coordinates at time `t`.
+fn table<const D: usize>(
     scene: &Scene,
-    model: &Model<D>,
     particle: &Particles<D>,
     reference: &[SVector<f64, D>],
     exact: &Option<Exact>,
+    t: f64,
 ) -> Table {
     let mut columns = vec!["particle".to_string()];
     for name in ["position", "displacement", "velocity"] {
@@ -246,7 +321,6 @@ fn last_state<const D: usize>(
         columns.extend(["displacement", "velocity", "stress"].map(|name| format!("{name}_exact")));
     }
     let mut table = Table::new(columns, particle.len());
-    let end = model.steps as f64 * model.dt;
     for p in 0..particle.len() {
         table.push(p as f64);
         for i in 0..D {
@@ -264,7 +338,7 @@ fn last_state<const D: usize>(
         table.push(particle.rho[p]);
         table.push(particle.m[p]);
         if let Some(exact) = exact {
-            let fields = exact.at(reference[p][0], end);
+            let fields = exact.at(reference[p][0], t);
             table.push(fields.displacement);
             table.push(fields.velocity);
             table.push(fields.stress);

@@ -4,8 +4,8 @@ use crate::cost::Cost;
 use crate::exact::Exact;
 use crate::measure::rms;
 use crate::model::wave_speed;
-use crate::run::Outcome;
-use crate::scene::{Quantity, Scene};
+use crate::run::{Outcome, loaded};
+use crate::scene::{Motion, Quantity, Scene};
 
 /// One line of the summary.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,30 +15,53 @@ pub struct Line {
     pub unit: &'static str,
 }
 
-/// The scales that make errors relative, from v0, the largest initial speed.
+/// The scales that make errors relative. For a body thrown at v0 they are those of
+/// the bar: v0, the plateau Z v0/2, and v0 L/4c. For a mode they are V, Z V and V/ω
+/// with its largest speed V; for loads V, Z V and V L/c with V = b L/c + t/Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// v0 (m/s).
+    /// (m/s).
     pub velocity: f64,
-    /// Z v0 / 2 (Pa), the plateau of the stress.
+    /// (Pa).
     pub stress: f64,
-    /// v0 L / 4c (m).
+    /// (m).
     pub displacement: f64,
 }
 
 impl Scales {
     pub fn of(scene: &Scene) -> Self {
-        let speeds = scene
-            .initial_velocity
-            .iter()
-            .map(|region| libm::sqrt(region.velocity.iter().map(|v| v * v).sum()));
-        let v0 = speeds.fold(0.0, f64::max);
         let c = wave_speed(&scene.body);
-        Scales {
-            velocity: v0,
-            stress: scene.body.density * c * v0 / 2.0,
-            displacement: v0 * scene.body.length[0] / (4.0 * c),
+        let (rho, transit) = (scene.body.density, scene.body.length[0] / c);
+        let size = |list: &[f64]| libm::sqrt(list.iter().map(|x| x * x).sum());
+        let thrown = match &scene.motion {
+            Motion::Regions(regions) => {
+                regions.iter().map(|region| size(&region.velocity)).fold(0.0, f64::max)
+            }
+            _ => 0.0,
+        };
+        if thrown > 0.0 {
+            return Scales {
+                velocity: thrown,
+                stress: rho * c * thrown / 2.0,
+                displacement: thrown * transit / 4.0,
+            };
         }
+        let (velocity, displacement) = match Exact::of(scene) {
+            Ok(Exact::Linear { vibration: Some(v), .. }) => {
+                (v.velocity.abs(), v.velocity.abs() / (v.c * v.mode.k))
+            }
+            Ok(Exact::Manufactured(m)) => {
+                ((m.amplitude * m.c * m.mode.k).abs(), m.amplitude.abs())
+            }
+            _ => {
+                let body = scene.body_force.as_ref().map_or(0.0, |b| size(&b.acceleration));
+                let sides = scene.traction.iter().flat_map(|load| load.sides.iter().flatten());
+                let traction = sides.map(|t| size(t)).fold(0.0, f64::max);
+                let velocity = body * transit + traction / (rho * c);
+                (velocity, velocity * transit)
+            }
+        };
+        Scales { velocity, stress: rho * c * velocity, displacement }
     }
 
     /// The scale of a quantity.
@@ -78,11 +101,16 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<Line> {
     }
     if exact {
         let of = |name: &str| outcome.particles.column(name).unwrap_or_default();
-        let error = rms(of("displacement").into_iter().zip(of("displacement_exact")));
-        add("displacement_field_rms".into(), error, "m");
-        if scales.displacement > 0.0 {
-            let relative = error / scales.displacement;
-            add("displacement_field_rms_relative".into(), relative, "1");
+        for (name, unit, scale) in [
+            ("velocity", "m/s", scales.velocity),
+            ("stress", "Pa", scales.stress),
+            ("displacement", "m", scales.displacement),
+        ] {
+            let error = rms(of(name).into_iter().zip(of(&format!("{name}_exact"))));
+            add(format!("{name}_field_rms"), error, unit);
+            if scale > 0.0 {
+                add(format!("{name}_field_rms_relative"), error / scale, "1");
+            }
         }
     }
     let kinetic = column("kinetic_energy");
@@ -94,7 +122,16 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<Line> {
     if let (Some(&first), Some(&last)) = (total.first(), total.last()) {
         add("energy_start".into(), first, "J");
         add("energy_end".into(), last, "J");
-        if first > 0.0 {
+        if loaded(scene) {
+            let work = column("work");
+            add("work_end".into(), work.last().copied().unwrap_or_default(), "J");
+            let largest = peak(&total);
+            let balance: Vec<f64> =
+                total.iter().zip(&work).map(|(energy, work)| energy - first - work).collect();
+            if largest > 0.0 {
+                add("energy_balance_largest".into(), peak(&balance) / largest, "1");
+            }
+        } else if first > 0.0 {
             let drift: Vec<f64> = total.iter().map(|energy| energy / first - 1.0).collect();
             add("energy_drift".into(), last / first - 1.0, "1");
             add("energy_drift_largest".into(), peak(&drift), "1");

@@ -11,13 +11,17 @@
 use approx::assert_relative_eq;
 use lme_mpm::basis::{Basis, Scratch, tabulate};
 use lme_mpm::continuum::law::LinearElastic;
+use lme_mpm::continuum::loads::{BodyForce, Loads, Traction};
+use lme_mpm::continuum::mass::ConsistentMass;
 use lme_mpm::continuum::shape::Shape;
 use lme_mpm::continuum::state::{Nodes, Particles};
 use lme_mpm::cost::Cost;
 use lme_mpm::fault::{Breakdown, Moment};
 use lme_mpm::grid::Grid;
+use lme_mpm::model::Model;
 use lme_mpm::reading::StepEight;
-use lme_mpm::time::steps;
+use lme_mpm::scene::Mass;
+use lme_mpm::time::{Integrator, steps};
 use nalgebra::Vector1;
 
 const DT: f64 = 0.25;
@@ -91,9 +95,18 @@ fn step_2_discard() {
 #[test]
 fn step_3_transfer() {
     let (particle, mut node, shape) = setup();
-    steps::transfer(&mut node, &particle, &shape);
+    transfer(&mut node, &mut None, &particle, &shape);
     assert_eq!(node.m, M);
     assert_eq!(scalars(&node.p), P);
+}
+
+fn transfer(
+    node: &mut Nodes<1>,
+    mass: &mut Option<ConsistentMass<1>>,
+    particle: &Particles<1>,
+    shape: &Shape<1>,
+) {
+    steps::transfer(node, mass, particle, shape, Moment::START, &mut Cost::default()).unwrap();
 }
 
 /// The fixed node loses its momentum, and v_I = p_I/m_I; a node without mass
@@ -101,14 +114,32 @@ fn step_3_transfer() {
 #[test]
 fn step_4_impose_essential() {
     let (particle, mut node, shape) = setup();
-    steps::transfer(&mut node, &particle, &shape);
+    transfer(&mut node, &mut None, &particle, &shape);
     node.m.push(0.0);
     for list in [&mut node.p, &mut node.v, &mut node.f] {
         list.push(Vector1::new(0.0));
     }
-    steps::impose_essential(&mut node, &FIXED);
+    steps::impose_essential(&mut node, &mut None, &FIXED, &mut Cost::default());
     assert_eq!(scalars(&node.p), [0.0, 1.5, -8.0, 0.0]);
     assert_eq!(scalars(&node.v), [0.0, 0.2, -2.0, 0.0]);
+}
+
+/// (12) with node 0 fixed: 4.375 v_1 + 2 v_2 = 1.5 and 2 v_1 + 2 v_2 = −8 give
+/// v = 4, −8; the node's momentum is then m_I v_I.
+#[test]
+fn step_4_with_the_consistent_mass() {
+    let (particle, mut node, shape) = setup();
+    let mut mass = Some(ConsistentMass::blank(3, &FIXED));
+    let mut cost = Cost::default();
+    transfer(&mut node, &mut mass, &particle, &shape);
+    steps::impose_essential(&mut node, &mut mass, &FIXED, &mut cost);
+    for (v, expected) in scalars(&node.v).iter().zip([0.0, 4.0, -8.0]) {
+        assert_relative_eq!(*v, expected, max_relative = 1e-14);
+    }
+    for (p, expected) in scalars(&node.p).iter().zip([0.0, 30.0, -32.0]) {
+        assert_relative_eq!(*p, expected, max_relative = 1e-14);
+    }
+    assert_eq!(cost.solves, 1);
 }
 
 /// Δε = Δt (v_2 − v_1)/h in each cell: 0.25 · 0.2 and 0.25 · (−2.2).
@@ -149,11 +180,37 @@ fn step_6_update_stress() {
 #[test]
 fn step_7_balance_forces() {
     let (particle, mut node, shape) = setup();
-    steps::balance_forces(&mut node, &particle, &shape, &[]);
+    let mut cost = Cost::default();
+    let mut balance = |node: &mut Nodes<1>, model: &Model<1>, t: f64| {
+        steps::discard(node);
+        steps::balance_forces(node, &mut None, &particle, &shape, model, t, &mut cost);
+    };
+    balance(&mut node, &model(&[], None), 0.0);
     assert_eq!(scalars(&node.f), F);
-    steps::discard(&mut node);
-    steps::balance_forces(&mut node, &particle, &shape, &FIXED);
+    balance(&mut node, &model(&FIXED, None), 0.0);
     assert_eq!(scalars(&node.f), [0.0, F[1], F[2]]);
+    // (15): a body force adds b m_I; a force on particle 2 goes to nodes 1 and 2
+    // in halves. Half of each after half of the ramp.
+    let uniform = BodyForce::Uniform { b: Vector1::new(-2.0), ramp: 4.0 };
+    let layer = vec![(2, Vector1::new(24.0))];
+    let loads = Loads { body: Some(uniform), traction: Some(Traction { layer, ramp: 4.0 }) };
+    balance(&mut node, &model(&[], Some(loads)), 2.0);
+    assert_eq!(scalars(&node.f), [F[0] - M[0], F[1] - M[1] + 6.0, F[2] - M[2] + 6.0]);
+    assert_eq!((cost.body_forces, cost.tractions), (3, 1));
+}
+
+fn model(fixed: &[(usize, usize)], loads: Option<Loads<1>>) -> Model<1> {
+    Model {
+        grid: Grid::over([2.0], [2], [[0, 0]]),
+        basis: Basis::Linear,
+        law: LinearElastic::new(100.0, 0.0),
+        fixed: fixed.to_vec(),
+        integrator: Integrator::CorrectedEuler,
+        loads,
+        mass: Mass::Lumped,
+        dt: DT,
+        steps: 1,
+    }
 }
 
 /// p_I += γ f_I Δt, or f_I Δt as printed.

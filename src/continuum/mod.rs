@@ -3,6 +3,8 @@
 //! move quantities between the two.
 
 pub mod law;
+pub mod loads;
+pub mod mass;
 pub mod shape;
 pub mod state;
 pub mod sums;

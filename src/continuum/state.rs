@@ -4,6 +4,7 @@
 //! `particle.m[p]` and `m_I` is `node.m[I]`. Positions are measured from the
 //! body's lower corner, so moving a scene in space changes no digit.
 
+use super::mass::ConsistentMass;
 use super::shape::Shape;
 use crate::basis::Scratch;
 use nalgebra::{SMatrix, SVector};
@@ -48,11 +49,13 @@ pub struct Nodes<const D: usize> {
 // ANCHOR_END: nodes
 
 /// Particles, nodes, and the table of shape functions between them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct State<const D: usize> {
     pub particle: Particles<D>,
     pub node: Nodes<D>,
     pub shape: Shape<D>,
+    /// m_IJ, only with `mass = "consistent"`.
+    pub mass: Option<ConsistentMass<D>>,
     /// What the basis keeps for its next table.
     pub scratch: Scratch<D>,
 }

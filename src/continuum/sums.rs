@@ -3,8 +3,10 @@
 #![allow(non_snake_case)]
 
 use super::law::{applied, outer};
+use super::loads::Loads;
 use super::shape::Shape;
 use super::state::{Nodes, Particles};
+use crate::cost::Cost;
 use nalgebra::{SMatrix, SVector};
 
 // ANCHOR: lumped_mass
@@ -40,6 +42,36 @@ pub fn internal_force<const D: usize>(
     }
 }
 // ANCHOR_END: internal_force
+
+// ANCHOR: external_force
+/// (15): f_I += Σ_p N_Ip m_p b_p + Σ_p N_Ip m_p h⁻¹ t^s_p  (N) at time `t` (s).
+pub fn external_force<const D: usize>(
+    node: &mut Nodes<D>,
+    particle: &Particles<D>,
+    shape: &Shape<D>,
+    loads: &Loads<D>,
+    t: f64,
+    cost: &mut Cost,
+) {
+    if let Some(body) = &loads.body {
+        for p in 0..particle.len() {
+            let force = body.at(p, t) * particle.m[p];
+            for (I, N_Ip, _) in shape.of(p) {
+                node.f[I] += force * N_Ip;
+            }
+        }
+        cost.body_forces += particle.len() as u64;
+    }
+    if let Some(traction) = &loads.traction {
+        for (p, force) in traction.at(t) {
+            for (I, N_Ip, _) in shape.of(p) {
+                node.f[I] += force * N_Ip;
+            }
+        }
+        cost.tractions += traction.layer.len() as u64;
+    }
+}
+// ANCHOR_END: external_force
 
 // ANCHOR: velocity_gradient
 /// The gradient inside (16): ∇v at particle p, Σ_I (v_I − v_0) ⊗ ∇N_Ip  (1/s).

@@ -74,6 +74,11 @@ pub fn eigenvectors_inverse(Z: f64) -> Matrix2<f64> {
 
 // ANCHOR: reflect
 impl End {
+    /// The end of a bar with this side.
+    pub fn of(side: &crate::scene::Side) -> End {
+        if side.fixed[0] { End::Fixed } else { End::Free }
+    }
+
     /// The ratio of the leaving to the arriving invariant: −1 or +1.
     pub fn reflection(self) -> f64 {
         match self {

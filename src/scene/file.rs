@@ -22,6 +22,10 @@ pub struct File {
     pub boundary: BTreeMap<String, Spanned<FileSide>>,
     #[serde(default)]
     pub initial_velocity: Vec<FileRegion>,
+    pub vibration: Option<Spanned<FileVibration>>,
+    pub manufactured: Option<Spanned<FileManufactured>>,
+    pub body_force: Option<FileBodyForce>,
+    pub traction: Option<FileTraction>,
     #[serde(default)]
     pub probe: Vec<FileProbe>,
     #[serde(default)]
@@ -35,6 +39,14 @@ pub struct FileBody {
     pub density: Spanned<f64>,
     pub youngs_modulus: Spanned<f64>,
     pub poisson_ratio: Spanned<f64>,
+    #[serde(default)]
+    pub ball: Vec<FileBall>,
+}
+
+#[derive(Deserialize)]
+pub struct FileBall {
+    pub centre: Spanned<PerAxis<f64>>,
+    pub radius: Spanned<f64>,
 }
 
 #[derive(Deserialize)]
@@ -70,6 +82,35 @@ pub struct FileRegion {
 }
 
 #[derive(Deserialize)]
+pub struct FileVibration {
+    pub mode: Spanned<i64>,
+    pub velocity: Spanned<f64>,
+}
+
+#[derive(Deserialize)]
+pub struct FileManufactured {
+    pub mode: Spanned<i64>,
+    pub amplitude: Spanned<f64>,
+}
+
+#[derive(Deserialize)]
+pub struct FileBodyForce {
+    pub acceleration: Spanned<PerAxis<f64>>,
+    pub ramp: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+pub struct FileTraction {
+    pub ramp: Option<Spanned<f64>>,
+    pub left: Option<Spanned<PerAxis<f64>>>,
+    pub right: Option<Spanned<PerAxis<f64>>>,
+    pub bottom: Option<Spanned<PerAxis<f64>>>,
+    pub top: Option<Spanned<PerAxis<f64>>>,
+    pub back: Option<Spanned<PerAxis<f64>>>,
+    pub front: Option<Spanned<PerAxis<f64>>>,
+}
+
+#[derive(Deserialize)]
 pub struct FileProbe {
     pub name: Spanned<String>,
     pub quantity: Spanned<String>,
@@ -80,6 +121,7 @@ pub struct FileProbe {
 #[derive(Deserialize, Default)]
 pub struct FileOutput {
     pub every: Option<Spanned<i64>>,
+    pub vtk: Option<Spanned<bool>>,
 }
 
 /// A number, or a list with one number for each axis.

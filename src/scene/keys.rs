@@ -21,11 +21,14 @@ const SIDE: &str =
 const COMPONENT: &str = "\"fixed\" or \"free\"";
 const BEYOND: &str = "a whole number of cells from 0 up; without it 0 beyond a fixed side, 1 beyond a free one and for uGIMP";
 
+const TRACTION: &str = "t in Pa, one number for each axis, 0 where the side is fixed";
+const RAMP: &str = "a time from 0 up in s over which it grows linearly; 0 without it";
+
 /// All keys, in the order in which a scene is read aloud.
 pub const KEYS: &[Key] = &[
     must("title", "a text without control characters"),
     must("method", "\"mpm\""),
-    must("mass", "\"lumped\""),
+    must("mass", "\"lumped\" or \"consistent\""),
     must("body", "a table"),
     must(
         "body.length",
@@ -35,6 +38,9 @@ pub const KEYS: &[Key] = &[
     must("body.density", "a number above 0, in kg/m³"),
     must("body.youngs_modulus", "a number above 0, in Pa"),
     must("body.poisson_ratio", "a number ν with −1 < ν < 0.5"),
+    may("body.ball", "a list, [[body.ball]]: the material is inside these, in 2D and 3D"),
+    must("body.ball.centre", "a point of the body's box in m, one number for each axis"),
+    must("body.ball.radius", "a length above 0 in m that keeps the ball inside the body's box"),
     must("grid", "a table"),
     must("grid.cells", "a whole number from 1 up over the body's length, one for each axis"),
     must("grid.particles_per_cell", "a whole number from 1 to 64, one for each axis"),
@@ -97,6 +103,26 @@ pub const KEYS: &[Key] = &[
     ),
     must("initial_velocity.to", "the region's upper corner in m, above `from`, inside the body"),
     must("initial_velocity.velocity", "a velocity in m/s, one number for each axis"),
+    may("vibration", "a table, in 1D, in place of initial_velocity: v = V φ(x), a natural mode"),
+    must("vibration.mode", "a whole number from 1 to 1000"),
+    must("vibration.velocity", "V, a velocity in m/s"),
+    may(
+        "manufactured",
+        "a table, in 1D, in place of initial_velocity: u = A φ(X) sin ωt, kept by a body force",
+    ),
+    must("manufactured.mode", "a whole number from 1 to 1000"),
+    must("manufactured.amplitude", "A in m with |A| k < 1, so that no material turns inside out"),
+    may("body_force", "a table"),
+    must("body_force.acceleration", "b in m/s², one number for each axis"),
+    may("body_force.ramp", RAMP),
+    may("traction", "a table of sides as in `boundary`, each with its traction"),
+    may("traction.left", TRACTION),
+    may("traction.right", TRACTION),
+    may("traction.bottom", TRACTION),
+    may("traction.top", TRACTION),
+    may("traction.back", TRACTION),
+    may("traction.front", TRACTION),
+    may("traction.ramp", RAMP),
     may("probe", "a list of probes, [[probe]]"),
     must(
         "probe.name",
@@ -110,10 +136,11 @@ pub const KEYS: &[Key] = &[
     ),
     may("output", "a table"),
     may("output.every", "a whole number from 1 up: record every so many steps; 1 without it"),
+    may("output.vtk", "in 2D and 3D: true writes the particles of every recorded step for ParaView"),
 ];
 
 /// Keys whose value is a list of tables.
-pub const LISTS: &[&str] = &["initial_velocity", "probe"];
+pub const LISTS: &[&str] = &["initial_velocity", "probe", "body.ball"];
 
 /// The key with this path, list indices dropped.
 pub fn find(path: &str) -> Option<&'static Key> {

@@ -8,6 +8,7 @@ mod check;
 mod file;
 pub mod keys;
 mod limits;
+mod loads;
 mod read;
 mod scheme;
 mod source;
@@ -35,10 +36,14 @@ pub struct Scene {
     pub time: Time,
     /// For each axis its lower and upper side.
     pub boundary: Vec<[Side; 2]>,
-    pub initial_velocity: Vec<Region>,
+    pub motion: Motion,
+    pub body_force: Option<BodyForce>,
+    pub traction: Option<Traction>,
     pub probes: Vec<Probe>,
     /// Record every so many steps.
     pub every: usize,
+    /// Write the particles for ParaView whenever a step is recorded.
+    pub vtk: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +56,8 @@ pub enum Method {
 pub enum Mass {
     /// The row sums m_I of (18).
     Lumped,
+    /// m_IJ of (12) and (13).
+    Consistent,
 }
 
 /// A box of linear elastic material.
@@ -66,6 +73,17 @@ pub struct Body {
     pub youngs_modulus: f64,
     /// ν (–).
     pub poisson_ratio: f64,
+    /// The material is inside these; without any it fills the box.
+    pub balls: Vec<Ball>,
+}
+
+/// The points within a radius: a disc in 2D, a ball in 3D.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ball {
+    /// From the body's lower corner (m).
+    pub centre: Vec<f64>,
+    /// (m).
+    pub radius: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -91,6 +109,35 @@ pub struct Time {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Side {
     pub fixed: Vec<bool>,
+}
+
+/// How the body moves at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// At rest but for these regions.
+    Regions(Vec<Region>),
+    /// v = V φ(x) in a natural mode of the bar.
+    Vibration { mode: usize, velocity: f64 },
+    /// u = A φ(X) sin ωt, kept going at finite strain by a body force.
+    Manufactured { mode: usize, amplitude: f64 },
+}
+
+/// A force per mass, the same everywhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyForce {
+    /// b (m/s²).
+    pub acceleration: Vec<f64>,
+    /// The time over which it grows linearly (s); 0 for at once.
+    pub ramp: f64,
+}
+
+/// Tractions on the sides of the box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traction {
+    /// For each axis its lower and upper side: t (Pa) per area at t = 0.
+    pub sides: Vec<[Vec<f64>; 2]>,
+    /// The time over which they grow linearly (s); 0 for at once.
+    pub ramp: f64,
 }
 
 /// A box [from, to) in the body's frame with an initial velocity.

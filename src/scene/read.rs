@@ -3,8 +3,11 @@
 use super::check::{Check, counted};
 use super::file::*;
 use super::limits::affordable;
+use super::loads;
 use super::scheme::{basis, time};
 use super::*;
+use crate::exact::mode::Mode;
+use crate::exact::riemann::End;
 use crate::fault::SceneError;
 use crate::scene::source::Source;
 use std::collections::BTreeMap;
@@ -12,11 +15,11 @@ use std::ops::Range;
 use toml::Spanned;
 
 /// Names of the axes and of their two sides.
-const AXES: [(&str, [&str; 2]); 3] =
+pub const AXES: [(&str, [&str; 2]); 3] =
     [("x", ["left", "right"]), ("y", ["bottom", "top"]), ("z", ["back", "front"])];
 
 /// Names that columns and files of a run have already.
-const TAKEN: [&str; 10] = [
+const TAKEN: [&str; 16] = [
     "step",
     "t",
     "kinetic_energy",
@@ -25,6 +28,12 @@ const TAKEN: [&str; 10] = [
     "momentum_x",
     "momentum_y",
     "momentum_z",
+    "work",
+    "particles",
+    "angular_momentum",
+    "angular_momentum_x",
+    "angular_momentum_y",
+    "angular_momentum_z",
     "displacement_field",
     "energy",
 ];
@@ -46,14 +55,16 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
         file.method.span(),
         &[("mpm", Method::Mpm)],
     )?;
+    let masses = [("lumped", Mass::Lumped), ("consistent", Mass::Consistent)];
     let mass =
-        check.choose("mass", file.mass.get_ref(), file.mass.span(), &[("lumped", Mass::Lumped)])?;
+        check.choose("mass", file.mass.get_ref(), file.mass.span(), &masses)?;
     let body = body(&check, &file.body)?;
     let time = time(&check, &file.time)?;
     let boundary = boundary(&check, &file.boundary)?;
     let grid = grid(&check, &file.grid, &boundary, file.basis.kind.get_ref() == "ugimp")?;
     let basis = basis(&check, &file.basis, &grid)?;
-    let initial_velocity = regions(&check, &file.initial_velocity, &body, &grid)?;
+    let motion = motion(&check, &file, &body, &grid, &boundary)?;
+    let (body_force, traction) = loads::read(&check, &file, &body, &boundary)?;
     let probes = probes(&check, &file.probe, &body)?;
     let every = match &file.output.every {
         None => 1,
@@ -63,6 +74,12 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
             return Err(source.error("output.every", every.span(), problem));
         }
     };
+
+    let vtk = file.output.vtk.as_ref().is_some_and(|vtk| *vtk.get_ref());
+    if let Some(value) = file.output.vtk.as_ref().filter(|_| dimension == 1) {
+        let problem = "it means nothing in 1D";
+        return Err(source.error("output.vtk", value.span(), problem));
+    }
 
     if let Some(bad) = file.title.get_ref().chars().find(|c| c.is_control()) {
         let problem = format!("it holds the control character {bad:?}");
@@ -78,9 +95,12 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
         basis,
         time,
         boundary,
-        initial_velocity,
+        motion,
+        body_force,
+        traction,
         probes,
         every,
+        vtk,
     };
     affordable(&check, &scene, &file.grid, &file.time)?;
     Ok(scene)
@@ -98,7 +118,9 @@ fn body(check: &Check, file: &FileBody) -> Result<Body, Box<SceneError>> {
         youngs_modulus: check.number("body.youngs_modulus", &file.youngs_modulus, positive)?,
         poisson_ratio: check
             .number("body.poisson_ratio", &file.poisson_ratio, |nu| -1.0 < nu && nu < 0.5)?,
+        balls: Vec::new(),
     };
+    let body = Body { balls: balls(check, &file.ball, &body)?, ..body };
     let c = crate::model::wave_speed(&body);
     let impedance = body.density * c;
     let normal = |x: f64| x.is_normal() && x.recip().is_normal();
@@ -115,8 +137,32 @@ fn body(check: &Check, file: &FileBody) -> Result<Body, Box<SceneError>> {
     Ok(body)
 }
 
+fn balls(check: &Check, file: &[FileBall], body: &Body) -> Result<Vec<Ball>, Box<SceneError>> {
+    let mut balls = Vec::new();
+    for (n, entry) in file.iter().enumerate() {
+        let key = |name: &str| format!("body.ball[{n}].{name}");
+        if check.dimension == 1 {
+            let problem = "a bar has no balls: the scene has 1 axis";
+            return Err(check.source.error(&key("centre"), entry.centre.span(), problem));
+        }
+        let inside = |d: usize, x: f64| body.origin[d] < x && x < body.origin[d] + body.length[d];
+        let centre = check.axes(&key("centre"), &entry.centre, inside)?;
+        let from_corner: Vec<f64> =
+            centre.iter().zip(&body.origin).map(|(x, origin)| x - origin).collect();
+        let room = (0..check.dimension)
+            .map(|d| from_corner[d].min(body.length[d] - from_corner[d]))
+            .fold(f64::INFINITY, f64::min);
+        // A ball may touch the side, up to the round-off of its centre.
+        let radius = check.number(&key("radius"), &entry.radius, |radius| {
+            radius > 0.0 && radius <= room * (1.0 + 1e-12)
+        })?;
+        balls.push(Ball { centre: from_corner, radius });
+    }
+    Ok(balls)
+}
+
 /// Refuses a side or component that the scene has no axis for.
-fn axis_of(
+pub fn axis_of(
     check: &Check,
     key: String,
     span: Range<usize>,
@@ -164,7 +210,7 @@ fn boundary(
     Ok(boundary)
 }
 
-fn side_axis(name: &str) -> Option<usize> {
+pub fn side_axis(name: &str) -> Option<usize> {
     AXES.iter().position(|(_, sides)| sides.contains(&name))
 }
 
@@ -196,6 +242,49 @@ fn grid(
         particles_per_cell: per_cell.iter().map(|n| *n as usize).collect(),
         beyond,
     })
+}
+
+/// How the body moves at the start: one of three tables, or none.
+fn motion(
+    check: &Check,
+    file: &File,
+    body: &Body,
+    grid: &GridSpec,
+    boundary: &[[Side; 2]],
+) -> Result<Motion, Box<SceneError>> {
+    let vibration = file.vibration.as_ref().map(|table| ("vibration", table.span()));
+    let manufactured = file.manufactured.as_ref().map(|table| ("manufactured", table.span()));
+    let mut tables: Vec<(&str, Range<usize>)> = [vibration, manufactured].into_iter().flatten().collect();
+    let thrown = file.initial_velocity.first().map(|first| ("initial_velocity", first.from.span()));
+    tables.extend(thrown);
+    if let [(name, _), (other, span), ..] = tables.as_slice() {
+        let problem = format!("the scene has `{name}`, and only one of them can set the motion");
+        return Err(check.source.error(other, span.clone(), problem));
+    }
+    if let Some((name, span)) = tables.first().filter(|(name, _)| *name != "initial_velocity") {
+        if check.dimension > 1 {
+            let problem = format!("the scene has {}", counted(check.dimension, "axis"));
+            return Err(check.source.error(name, span.clone(), problem));
+        }
+    }
+    let number = |key: &str, mode: &Spanned<i64>| match *mode.get_ref() {
+        n @ 1..=1000 => Ok(n as usize),
+        n => Err(check.source.error(key, mode.span(), format!("{n} is out of range"))),
+    };
+    if let Some(table) = file.vibration.as_ref().map(Spanned::get_ref) {
+        let mode = number("vibration.mode", &table.mode)?;
+        let velocity = check.number("vibration.velocity", &table.velocity, |_| true)?;
+        return Ok(Motion::Vibration { mode, velocity });
+    }
+    if let Some(table) = file.manufactured.as_ref().map(Spanned::get_ref) {
+        let mode = number("manufactured.mode", &table.mode)?;
+        let ends = [0, 1].map(|upper: usize| End::of(&boundary[0][upper]));
+        let k = Mode::new(ends, mode, body.length[0]).k;
+        let key = "manufactured.amplitude";
+        let amplitude = check.number(key, &table.amplitude, |a| (a * k).abs() < 1.0)?;
+        return Ok(Motion::Manufactured { mode, amplitude });
+    }
+    regions(check, &file.initial_velocity, body, grid).map(Motion::Regions)
 }
 
 fn regions(

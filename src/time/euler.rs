@@ -19,7 +19,7 @@ use crate::reading::StressUpdate;
 // ANCHOR: forward_euler
 /// One time step of forward Euler, k → k+1.
 pub fn forward<const D: usize>(
-    State { particle, node, shape, scratch }: &mut State<D>,
+    State { particle, node, shape, mass, scratch }: &mut State<D>,
     model: &Model<D>,
     order: StressUpdate,
     dt: f64,
@@ -29,19 +29,19 @@ pub fn forward<const D: usize>(
     let fixed = &model.fixed;
     discard(node);
     tabulate(shape, scratch, particle, model, moment, cost)?; // N_Ip of k
-    transfer(node, particle, shape);
-    impose_essential(node, fixed);
+    transfer(node, mass, particle, shape, moment, cost)?;
+    impose_essential(node, mass, fixed, cost);
     if order == StressUpdate::First {
         update_material(particle, node, shape, model, dt, moment)?;
     }
-    balance_forces(node, particle, shape, fixed);
+    balance_forces(node, mass, particle, shape, model, moment.time - dt, cost);
     advance_momentum(node, dt);
     move_with_nodes(particle, node, shape, dt); // (20) (21)
     if order == StressUpdate::ModifiedLast {
         map_momentum_anew(node, particle, shape);
+        impose_essential(node, mass, fixed, cost);
     }
     if order != StressUpdate::First {
-        impose_essential(node, fixed);
         update_material(particle, node, shape, model, dt, moment)?;
     }
     Ok(())
@@ -51,7 +51,7 @@ pub fn forward<const D: usize>(
 // ANCHOR: corrected_euler
 /// One time step of the corrected form, k → k+1.
 pub fn corrected<const D: usize>(
-    State { particle, node, shape, scratch }: &mut State<D>,
+    State { particle, node, shape, mass, scratch }: &mut State<D>,
     model: &Model<D>,
     dt: f64,
     moment: Moment,
@@ -60,13 +60,13 @@ pub fn corrected<const D: usize>(
     let fixed = &model.fixed;
     discard(node);
     tabulate(shape, scratch, particle, model, moment, cost)?; // N_Ip of k
-    transfer(node, particle, shape);
-    impose_essential(node, fixed);
-    balance_forces(node, particle, shape, fixed);
+    transfer(node, mass, particle, shape, moment, cost)?;
+    impose_essential(node, mass, fixed, cost);
+    balance_forces(node, mass, particle, shape, model, moment.time - dt, cost);
     advance_momentum(node, dt);
     move_with_shares(particle, node, shape, dt); // (22) (23)
     map_momentum_anew(node, particle, shape);
-    impose_essential(node, fixed);
+    impose_essential(node, mass, fixed, cost);
     update_material(particle, node, shape, model, dt, moment)
 }
 // ANCHOR_END: corrected_euler

@@ -37,7 +37,7 @@ impl Parameters {
 /// a_I^k is the particles' acceleration, mapped like the velocity, and the
 /// strain is that of the nodal displacement inside (25).
 pub fn step<const D: usize>(
-    State { particle, node, shape, scratch }: &mut State<D>,
+    State { particle, node, shape, mass, scratch }: &mut State<D>,
     model: &Model<D>,
     rho_b: f64,
     dt: f64,
@@ -47,10 +47,10 @@ pub fn step<const D: usize>(
     let (parameters, fixed) = (Parameters::new(rho_b), &model.fixed);
     discard(node);
     tabulate(shape, scratch, particle, model, moment, cost)?; // N_Ip of k
-    transfer(node, particle, shape);
-    map_acceleration(node, particle, shape, fixed); // a_I^k
-    impose_essential(node, fixed);
-    balance_forces(node, particle, shape, fixed);
+    transfer(node, mass, particle, shape, moment, cost)?;
+    map_acceleration(node, mass, particle, shape, fixed, cost); // a_I^k
+    impose_essential(node, mass, fixed, cost);
+    balance_forces(node, mass, particle, shape, model, moment.time - dt, cost);
     balance_accelerations(node, &parameters); // a_I^{k+1}
     move_particles(particle, node, shape, &parameters, dt); // (24) (25) (26)
     average_velocity(node, &parameters, dt);

@@ -14,7 +14,7 @@ use crate::reading::StepEight;
 /// With Δt = 0 and blank nodes it moves nothing and gives the nodal values of
 /// k = 0, which the first predictor needs.
 pub fn step<const D: usize>(
-    State { particle, node, shape, scratch }: &mut State<D>,
+    State { particle, node, shape, mass, scratch }: &mut State<D>,
     model: &Model<D>,
     reading: StepEight,
     dt: f64,
@@ -25,12 +25,12 @@ pub fn step<const D: usize>(
     predict(particle, node, shape, dt); //              1: (27) (28)
     discard(node); //                                   2
     tabulate(shape, scratch, particle, model, moment, cost)?; // N_Ip at k+1
-    transfer(node, particle, shape); //                 3: (13)
-    impose_essential(node, fixed); //                   4
+    transfer(node, mass, particle, shape, moment, cost)?; //  3: (13)
+    impose_essential(node, mass, fixed, cost); //       4
     increment_strain(particle, node, shape, dt); //     5: (16)
     update_density(particle, moment)?; //               6: (17)
     update_stress(particle, law); //                       (3)
-    balance_forces(node, particle, shape, fixed); //    7: (14) (18)
+    balance_forces(node, mass, particle, shape, model, moment.time, cost); // 7: (14) (15) (18)
     integrate_momentum(node, dt, reading); //           8
     correct(particle, node, shape, dt); //              9: (29)
     Ok(())

@@ -4,6 +4,7 @@
 
 use crate::basis::{self, Reason, Scratch, Trouble};
 use crate::continuum::law::{self, LinearElastic};
+use crate::continuum::mass::{ConsistentMass, Singular};
 use crate::continuum::shape::Shape;
 use crate::continuum::state::{Nodes, Particles};
 use crate::continuum::sums;
@@ -74,19 +75,49 @@ pub fn tabulate<const D: usize>(
 // ANCHOR_END: tabulate_step
 
 // ANCHOR: transfer
-/// Step 3: m_I = Σ_p m_p N_Ip  (kg) and p_I = Σ_p m_p v_p N_Ip  (kg m/s).
-pub fn transfer<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, shape: &Shape<D>) {
+/// Step 3: m_I = Σ_p m_p N_Ip  (kg) and p_I = Σ_p m_p v_p N_Ip  (kg m/s); with
+/// the consistent mass matrix m_IJ, too.
+///
+/// Errors: [`Breakdown::SingularMass`].
+pub fn transfer<const D: usize>(
+    node: &mut Nodes<D>,
+    mass: &mut Option<ConsistentMass<D>>,
+    particle: &Particles<D>,
+    shape: &Shape<D>,
+    moment: Moment,
+    cost: &mut Cost,
+) -> Result<(), Breakdown> {
     sums::lumped_mass(node, particle, shape);
     sums::momentum(node, particle, shape);
+    if let Some(mass) = mass {
+        let nodes = node.m.iter().filter(|m_I| **m_I > 0.0).count();
+        mass.assemble(particle, shape, &node.m, cost).map_err(|Singular| {
+            Breakdown::SingularMass { particles: particle.len(), nodes, moment }
+        })?;
+    }
+    Ok(())
 }
 // ANCHOR_END: transfer
 
 // ANCHOR: impose_essential
 /// Step 4: p_I = 0 where the boundary is fixed, then v_I = p_I / m_I  (m/s).
-pub fn impose_essential<const D: usize>(node: &mut Nodes<D>, fixed: &Fixed) {
+pub fn impose_essential<const D: usize>(
+    node: &mut Nodes<D>,
+    mass: &mut Option<ConsistentMass<D>>,
+    fixed: &Fixed,
+    cost: &mut Cost,
+) {
     for &(I, i) in fixed {
         node.p[I][i] = 0.0;
     }
+    if let Some(mass) = mass {
+        mass.spread(&mut node.p, &node.m, cost);
+    }
+    update_velocity(node);
+}
+
+/// v_I = p_I / m_I  (m/s); a node without mass keeps the velocity 0.
+pub fn update_velocity<const D: usize>(node: &mut Nodes<D>) {
     for I in 0..node.len() {
         if node.m[I] > 0.0 {
             node.v[I] = node.p[I] / node.m[I];
@@ -144,16 +175,26 @@ pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &LinearEl
 // ANCHOR_END: update_stress
 
 // ANCHOR: balance_forces
-/// Step 7: f_I = f_I^int, (14), and f_I = 0 where the boundary is fixed  (N).
+/// Step 7: f_I = f_I^int + f_I^ext, (14) (15), with the loads of time `t` (s),
+/// and f_I = 0 where the boundary is fixed  (N).
 pub fn balance_forces<const D: usize>(
     node: &mut Nodes<D>,
+    mass: &mut Option<ConsistentMass<D>>,
     particle: &Particles<D>,
     shape: &Shape<D>,
-    fixed: &Fixed,
+    model: &Model<D>,
+    t: f64,
+    cost: &mut Cost,
 ) {
     sums::internal_force(node, particle, shape);
-    for &(I, i) in fixed {
+    if let Some(loads) = &model.loads {
+        sums::external_force(node, particle, shape, loads, t, cost);
+    }
+    for &(I, i) in &model.fixed {
         node.f[I][i] = 0.0;
+    }
+    if let Some(mass) = mass {
+        mass.spread(&mut node.f, &node.m, cost);
     }
 }
 // ANCHOR_END: balance_forces
@@ -205,11 +246,12 @@ pub fn update_material<const D: usize>(
     Ok(())
 }
 
-/// (18) over one step: p_I += f_I Δt  (kg m/s).
+/// (18) over one step: p_I += f_I Δt  (kg m/s), and v_I = p_I / m_I  (m/s).
 pub fn advance_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64) {
     for I in 0..node.len() {
         node.p[I] += node.f[I] * dt;
     }
+    update_velocity(node);
 }
 
 /// (20) v_p += Δt Σ_I N_Ip a_I and (21) x_p += Δt Σ_I N_Ip v_I, with
@@ -253,9 +295,11 @@ pub fn map_momentum_anew<const D: usize>(
 /// a_I = Σ_p m_p a_p N_Ip / m_I (m/s²), 0 where the boundary is fixed.
 pub fn map_acceleration<const D: usize>(
     node: &mut Nodes<D>,
+    mass: &mut Option<ConsistentMass<D>>,
     particle: &mut Particles<D>,
     shape: &Shape<D>,
     fixed: &Fixed,
+    cost: &mut Cost,
 ) {
     particle.a.resize(particle.m.len(), SVector::zeros());
     node.a.resize(node.m.len(), SVector::zeros());
@@ -263,13 +307,16 @@ pub fn map_acceleration<const D: usize>(
     for (I, p, N_Ip, _) in shape.pairs() {
         node.a[I] += particle.a[p] * (particle.m[p] * N_Ip);
     }
+    for &(I, i) in fixed {
+        node.a[I][i] = 0.0;
+    }
+    if let Some(mass) = mass {
+        mass.spread(&mut node.a, &node.m, cost);
+    }
     for I in 0..node.len() {
         if node.m[I] > 0.0 {
             node.a[I] /= node.m[I];
         }
-    }
-    for &(I, i) in fixed {
-        node.a[I][i] = 0.0;
     }
 }
 

@@ -1,0 +1,78 @@
+//! Loads of a scene: body force (10) and traction on a layer of particles (11).
+#![allow(non_snake_case)]
+
+use super::state::Particles;
+use crate::exact::manufactured::Manufactured;
+use nalgebra::SVector;
+
+/// What acts on the particles from outside; a scene without loads has none of
+/// this.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loads<const D: usize> {
+    pub body: Option<BodyForce<D>>,
+    pub traction: Option<Traction<D>>,
+}
+
+/// b_p, force per mass (m/s²).
+#[derive(Clone, Debug, PartialEq)]
+pub enum BodyForce<const D: usize> {
+    /// b min(t/T, 1).
+    Uniform { b: SVector<f64, D>, ramp: f64 },
+    /// That of a manufactured solution at the particles' first places X_p (m).
+    Manufactured { solution: Manufactured, X: Vec<f64> },
+}
+
+/// Particles of the layers behind the loaded sides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traction<const D: usize> {
+    /// Particle p, and the full force on it (N): m_p h⁻¹ t^s_p of (11) is the
+    /// traction times the particle's share of the side at t = 0.
+    pub layer: Vec<(usize, SVector<f64, D>)>,
+    /// T, the time over which the load grows (s).
+    pub ramp: f64,
+}
+
+// ANCHOR: loads
+/// min(t/T, 1), and 1 for T = 0: how much of a load acts at time `t`.
+pub fn ramp(t: f64, T: f64) -> f64 {
+    if t < T { t / T } else { 1.0 }
+}
+
+impl<const D: usize> BodyForce<D> {
+    /// b_p at time `t` (m/s²).
+    pub fn at(&self, p: usize, t: f64) -> SVector<f64, D> {
+        match self {
+            BodyForce::Uniform { b, ramp: T } => b * ramp(t, *T),
+            BodyForce::Manufactured { solution, X } => {
+                SVector::repeat(solution.body_force(X[p], t))
+            }
+        }
+    }
+}
+
+impl<const D: usize> Traction<D> {
+    /// The loaded particles with the force on each (N).
+    pub fn at(&self, t: f64) -> impl Iterator<Item = (usize, SVector<f64, D>)> {
+        let share = ramp(t, self.ramp);
+        self.layer.iter().map(move |(p, force)| (*p, force * share))
+    }
+}
+// ANCHOR_END: loads
+
+impl<const D: usize> Loads<D> {
+    /// Σ_p f_p · v_p, the power of the loads (W).
+    pub fn power(&self, particle: &Particles<D>, t: f64) -> f64 {
+        let mut power = 0.0;
+        if let Some(body) = &self.body {
+            for p in 0..particle.len() {
+                power += body.at(p, t).dot(&particle.v[p]) * particle.m[p];
+            }
+        }
+        if let Some(traction) = &self.traction {
+            for (p, force) in traction.at(t) {
+                power += force.dot(&particle.v[p]);
+            }
+        }
+        power
+    }
+}

@@ -1,0 +1,210 @@
+//! The consistent mass matrix (13), for scenes with `mass = "consistent"`.
+#![allow(non_snake_case)]
+
+use super::shape::Shape;
+use super::state::Particles;
+use crate::cost::Cost;
+use nalgebra::{DVector, SVector};
+use nalgebra_sparse::factorization::{CscCholesky, CscSymbolicCholesky};
+use nalgebra_sparse::pattern::SparsityPattern;
+
+/// A node counts as light when m_II < LIGHT^D m_I: its particles see it from
+/// afar only.
+///
+/// With m_II/m_I = ε the node's own frequency is c/(εh): no usable time step
+/// would be stable, and for ε → 0 the matrix is singular. The row and column of
+/// a light node are lumped, which keeps the matrix symmetric and its row sums.
+const LIGHT: f64 = 0.25;
+
+/// A pivot below this share of its diagonal entry counts as zero.
+const SINGULAR: f64 = 1e-12;
+
+/// m_IJ is not positive definite: the particles do not determine the velocity
+/// of every node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Singular;
+
+/// m_IJ with its Cholesky factors, one for each different set of fixed nodes.
+#[derive(Clone, Debug)]
+pub struct ConsistentMass<const D: usize> {
+    /// Which nodes share a particle; every node shares one with itself.
+    pattern: SparsityPattern,
+    /// m_IJ (kg), column by column.
+    values: Vec<f64>,
+    /// The same with the equations of fixed nodes taken out.
+    held: Vec<f64>,
+    /// Which nodes are light.
+    light: Vec<bool>,
+    systems: Vec<System>,
+    /// The system that serves component i.
+    system_of: [usize; D],
+    column: DVector<f64>,
+}
+
+/// The equations of the components that share one set of fixed nodes.
+#[derive(Clone, Debug)]
+struct System {
+    fixed: Vec<bool>,
+    factor: Option<CscCholesky<f64>>,
+}
+
+impl<const D: usize> ConsistentMass<D> {
+    /// An empty matrix for `nodes` nodes, of which those in `fixed` have no
+    /// velocity component i.
+    pub fn blank(nodes: usize, fixed: &[(usize, usize)]) -> Self {
+        let mut systems: Vec<System> = Vec::new();
+        let system_of = std::array::from_fn(|i| {
+            let mut held = vec![false; nodes];
+            for (I, _) in fixed.iter().filter(|(_, component)| *component == i) {
+                held[*I] = true;
+            }
+            systems.iter().position(|system| system.fixed == held).unwrap_or_else(|| {
+                systems.push(System { fixed: held, factor: None });
+                systems.len() - 1
+            })
+        });
+        ConsistentMass {
+            pattern: SparsityPattern::zeros(nodes, nodes),
+            values: Vec::new(),
+            held: Vec::new(),
+            light: vec![false; nodes],
+            systems,
+            system_of,
+            column: DVector::zeros(nodes),
+        }
+    }
+
+    // ANCHOR: consistent_mass
+    /// (13): m_IJ = Σ_p N_Ip m_p N_Jp  (kg), factorised; `m` is m_I (kg).
+    ///
+    /// Errors: [`Singular`].
+    pub fn assemble(
+        &mut self,
+        particle: &Particles<D>,
+        shape: &Shape<D>,
+        m: &[f64],
+        cost: &mut Cost,
+    ) -> Result<(), Singular> {
+        self.light.fill(false);
+        if !self.sum(particle, shape) {
+            self.couple(shape, m.len());
+            self.sum(particle, shape);
+        }
+        let bound: f64 = (0..D).map(|_| LIGHT).product();
+        for I in 0..m.len() {
+            self.light[I] = self.at(I, I).is_some_and(|k| self.values[k] < bound * m[I]);
+        }
+        if self.light.contains(&true) {
+            self.sum(particle, shape);
+        }
+        for n in 0..self.systems.len() {
+            self.factorise(n, m)?;
+        }
+        cost.factorizations += self.systems.len() as u64;
+        Ok(())
+    }
+
+    /// Σ_p over all pairs of nodes of a particle; false where the pattern lacks
+    /// one. A pair with a light node goes to the diagonal.
+    fn sum(&mut self, particle: &Particles<D>, shape: &Shape<D>) -> bool {
+        self.values.fill(0.0);
+        for (I, p, N_Ip, _) in shape.pairs() {
+            for (J, N_Jp, _) in shape.of(p) {
+                let column = if self.light[I] || self.light[J] { I } else { J };
+                let Some(k) = self.at(I, column) else { return false };
+                self.values[k] += N_Ip * particle.m[p] * N_Jp;
+            }
+        }
+        true
+    }
+    // ANCHOR_END: consistent_mass
+
+    /// Where m_IJ stands among the values.
+    fn at(&self, I: usize, J: usize) -> Option<usize> {
+        let offsets = self.pattern.major_offsets();
+        self.pattern.lane(J).binary_search(&I).ok().map(|n| offsets[J] + n)
+    }
+
+    /// The pattern of this table of shape functions; the factors go with the
+    /// old one.
+    fn couple(&mut self, shape: &Shape<D>, nodes: usize) {
+        let mut coupled: Vec<Vec<usize>> = (0..nodes).map(|I| vec![I]).collect();
+        for (I, p, _, _) in shape.pairs() {
+            coupled[I].extend(shape.of(p).map(|(J, _, _)| J));
+        }
+        let (mut offsets, mut indices) = (vec![0], Vec::new());
+        for list in &mut coupled {
+            list.sort_unstable();
+            list.dedup();
+            indices.append(list);
+            offsets.push(indices.len());
+        }
+        self.values = vec![0.0; indices.len()];
+        self.held = vec![0.0; indices.len()];
+        // Sorted and without doubles: this cannot fail.
+        if let Ok(pattern) =
+            SparsityPattern::try_from_offsets_and_indices(nodes, nodes, offsets, indices)
+        {
+            self.pattern = pattern;
+        }
+        for system in &mut self.systems {
+            system.factor = None;
+        }
+    }
+
+    /// The factor of system `n`: fixed nodes, and those without mass, stand
+    /// alone with 1 on the diagonal.
+    fn factorise(&mut self, n: usize, m: &[f64]) -> Result<(), Singular> {
+        let system = &mut self.systems[n];
+        let alone = |I: usize| system.fixed[I] || m[I] == 0.0;
+        let (offsets, rows) = (self.pattern.major_offsets(), self.pattern.minor_indices());
+        for J in 0..m.len() {
+            for k in offsets[J]..offsets[J + 1] {
+                let I = rows[k];
+                let single = if I == J { 1.0 } else { 0.0 };
+                self.held[k] = if alone(I) || alone(J) { single } else { self.values[k] };
+            }
+        }
+        let factor = match system.factor.take() {
+            Some(mut factor) => factor.refactor(&self.held).map(|()| factor),
+            None => {
+                let symbolic = CscSymbolicCholesky::factor(self.pattern.clone());
+                CscCholesky::factor_numerical(symbolic, &self.held)
+            }
+        }
+        .map_err(|_| Singular)?;
+        let factor = system.factor.insert(factor);
+        for J in 0..m.len() {
+            let diagonal = (offsets[J]..offsets[J + 1]).find(|k| rows[*k] == J);
+            let entry = diagonal.map_or(0.0, |k| self.held[k]);
+            let pivot = factor.l().col(J).values()[0];
+            if pivot * pivot < SINGULAR * entry {
+                return Err(Singular);
+            }
+        }
+        Ok(())
+    }
+
+    // ANCHOR: spread
+    /// q_I ← m_I Σ_J (m⁻¹)_IJ q_J for a nodal momentum or force that is zero
+    /// where the boundary is fixed; `m` is m_I (kg).
+    ///
+    /// Afterwards q_I / m_I is the nodal velocity or acceleration that solves
+    /// (12), so that all that follows is written once for both mass matrices.
+    /// Since Σ_J m_IJ = m_I, the sum Σ_I q_I stays what it was.
+    pub fn spread(&mut self, q: &mut [SVector<f64, D>], m: &[f64], cost: &mut Cost) {
+        for i in 0..D {
+            for I in 0..m.len() {
+                self.column[I] = q[I][i];
+            }
+            if let Some(factor) = &self.systems[self.system_of[i]].factor {
+                factor.solve_mut(&mut self.column);
+            }
+            for I in 0..m.len() {
+                q[I][i] = m[I] * self.column[I];
+            }
+        }
+        cost.solves += D as u64;
+    }
+    // ANCHOR_END: spread
+}
