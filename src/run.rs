@@ -124,7 +124,6 @@ fn march<const D: usize>(
     progress: &mut dyn FnMut(usize),
 ) -> Result<(), Breakdown> {
     time::start(state, model, cost)?;
-    recorder.load(&state.particle, model, Moment::START);
     recorder.record(scene, &state.particle, model, Moment::START)?;
     for step in 1..=model.steps {
         let moment = Moment { step, time: step as f64 * model.dt };
@@ -154,7 +153,7 @@ struct Recorder<const D: usize> {
     /// Total energy at the start (J).
     energy: f64,
     /// What the loads do; `None` without loads.
-    work: Option<Work>,
+    work: Option<Work<D>>,
     /// The particles at the recorded steps, if asked for.
     frames: Vec<Frame>,
     /// Where the particles stood at t = 0 (m).
@@ -162,14 +161,12 @@ struct Recorder<const D: usize> {
 }
 
 /// The work of the loads so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Work {
-    /// ∫ P dt by the trapezoidal rule (J).
+struct Work<const D: usize> {
     sum: f64,
-    /// ∫ |P| dt, what the loads have moved to and fro (J).
+    /// The same without signs, what the loads have moved to and fro (J).
     moved: f64,
-    /// P at the step before (W).
-    power: f64,
+    /// x_p of the step before (m).
+    before: Vec<SVector<f64, D>>,
 }
 
 /// The particles at one time.
@@ -197,7 +194,11 @@ impl<const D: usize> Recorder<D> {
             ),
             exact,
             energy: 0.0,
-            work: loaded(scene).then_some(Work::default()),
+            work: loaded(scene).then(|| Work {
+                sum: 0.0,
+                moved: 0.0,
+                before: particle.x.clone(),
+            }),
             frames: Vec::new(),
             reference: particle.x.clone(),
         }
@@ -206,12 +207,10 @@ impl<const D: usize> Recorder<D> {
     /// Adds the work of the loads over the step that ends at `moment`.
     fn load(&mut self, particle: &Particles<D>, model: &Model<D>, moment: Moment) {
         if let (Some(work), Some(loads)) = (&mut self.work, &model.loads) {
-            let power = loads.power(particle, moment.time);
-            if moment.step > 0 {
-                work.sum += 0.5 * model.dt * (work.power + power);
-                work.moved += 0.5 * model.dt * (work.power.abs() + power.abs());
-            }
-            work.power = power;
+            let step = loads.work(particle, &work.before, moment.time - model.dt, model.dt);
+            work.sum += step;
+            work.moved += step.abs();
+            work.before.copy_from_slice(&particle.x);
         }
     }
 
@@ -231,7 +230,7 @@ impl<const D: usize> Recorder<D> {
         if moment.step == 0 {
             self.energy = kinetic + strain;
         }
-        let available = self.energy + self.work.map_or(0.0, |work| work.moved);
+        let available = self.energy + self.work.as_ref().map_or(0.0, |work| work.moved);
         if available > 0.0 && kinetic + strain > BLOW_UP * available {
             return Err(Breakdown::Diverged {
                 particle: most_energetic(particle, model),
@@ -243,7 +242,7 @@ impl<const D: usize> Recorder<D> {
         self.history.push(moment.time);
         self.history.push(kinetic);
         self.history.push(strain);
-        if let Some(work) = self.work {
+        if let Some(work) = &self.work {
             self.history.push(work.sum);
         }
         for p_i in measure::momentum(particle).iter() {

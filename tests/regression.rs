@@ -1,4 +1,5 @@
-//! Pins: histories and pictures as approved, in `snapshots/`.
+//! Pins: tables and pictures as approved, in `snapshots/`; the histories are
+//! pinned in `matrix.rs`.
 //!
 //! A pin says "same as before". What says "right" stands in `analytical.rs`
 //! and `convergence.rs`. After a change that is meant to change results, run
@@ -15,55 +16,6 @@ use lme_mpm::scene::Scene;
 use lme_mpm::summary;
 use std::fmt::Write;
 use support::*;
-
-/// Rows of a history that are printed; the digest covers all of them.
-const ROWS: usize = 41;
-
-/// A probe's history, thinned out to `ROWS` rows of nine digits, and a digest
-/// of the bits of all rows.
-fn pin(outcome: &Outcome, probe: &str) -> String {
-    let column = |name: &str| outcome.history.column(name).unwrap();
-    let (step, t, computed) = (column("step"), column("t"), column(probe));
-    let exact = column(&format!("{probe}_exact"));
-    let every = (computed.len() - 1) / (ROWS - 1);
-    let mut text = format!(
-        "rows {} of {}; bits of all rows {:016x}\n{:>5} {:>15} {:>16} {:>16}\n",
-        ROWS,
-        computed.len(),
-        digest(&computed),
-        "step",
-        "t",
-        "computed",
-        "exact"
-    );
-    for k in (0..computed.len()).step_by(every) {
-        let (t, computed, exact) = (t[k], computed[k], exact[k]);
-        writeln!(text, "{:>5} {t:>15.8e} {computed:>16.8e} {exact:>16.8e}", step[k]).unwrap();
-    }
-    text
-}
-
-fn pin_both_probes(scene: &Scene, name: &str) {
-    let outcome = finished(scene);
-    for probe in ["velocity_end", "stress_three_quarter"] {
-        approve(&format!("{name}__{probe}"), &pin(&outcome, probe));
-    }
-}
-
-#[test]
-fn dyka_linear_newmark() {
-    pin_both_probes(&dyka(&[]), "dyka__linear__newmark");
-}
-
-/// Every other basis with the same scheme. The accuracy test beside these pins
-/// is `dyka_errors_of_every_basis` below.
-#[test]
-fn dyka_newmark_of_every_basis() {
-    for (name, sets) in BASES.iter().skip(1) {
-        let name = name.replace("lme γ = ", "lme_");
-        pin_both_probes(&dyka(sets), &format!("dyka__{name}__newmark"));
-    }
-}
 
 /// Errors of the bar by basis, with energy and cost beside them. Whatever the
 /// basis, the errors stay below those of a run that is merely stable, v ≤ 0.25
@@ -106,12 +58,6 @@ fn dyka_errors_of_every_basis() {
         .unwrap();
     }
     approve("dyka__errors_by_basis", &text);
-}
-
-#[test]
-fn dyka_linear_newmark_as_printed() {
-    let scene = dyka(&["time.reading=as-printed"]);
-    pin_both_probes(&scene, "dyka__linear__newmark_as_printed");
 }
 
 /// The picture in the README, and its companion, as the program draws them.

@@ -60,19 +60,30 @@ impl<const D: usize> Traction<D> {
 // ANCHOR_END: loads
 
 impl<const D: usize> Loads<D> {
-    /// Σ_p f_p · v_p, the power of the loads (W).
-    pub fn power(&self, particle: &Particles<D>, t: f64) -> f64 {
-        let mut power = 0.0;
+    /// Σ_p f_p · Δx_p, the work of the loads over a step from `t` to `t + dt` (J),
+    /// with the mean of both ends; `before` holds x_p at `t` (m).
+    ///
+    /// Taken with what the particles have moved by, not with their velocity:
+    /// beside a fixed node the two differ.
+    pub fn work(
+        &self,
+        particle: &Particles<D>,
+        before: &[SVector<f64, D>],
+        t: f64,
+        dt: f64,
+    ) -> f64 {
+        let mut work = 0.0;
         if let Some(body) = &self.body {
             for p in 0..particle.len() {
-                power += body.at(p, t).dot(&particle.v[p]) * particle.m[p];
+                let mean = (body.at(p, t) + body.at(p, t + dt)) * 0.5;
+                work += mean.dot(&(particle.x[p] - before[p])) * particle.m[p];
             }
         }
         if let Some(traction) = &self.traction {
-            for (p, force) in traction.at(t) {
-                power += force.dot(&particle.v[p]);
+            for ((p, force), (_, next)) in traction.at(t).zip(traction.at(t + dt)) {
+                work += ((force + next) * 0.5).dot(&(particle.x[p] - before[p]));
             }
         }
-        power
+        work
     }
 }

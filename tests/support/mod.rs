@@ -4,12 +4,18 @@
 use lme_mpm::continuum::state::State;
 use lme_mpm::cost::Cost;
 use lme_mpm::fault::Moment;
+use lme_mpm::measure::observed_order;
 use lme_mpm::model::Model;
 use lme_mpm::run::{Outcome, run};
 use lme_mpm::scene::{DYKA, Scene};
 use lme_mpm::time;
 
 pub const FREE_FLIGHT: &str = include_str!("../../data/scenes/free-flight.toml");
+pub const VIBRATION: &str = include_str!("../../data/scenes/vibration.toml");
+pub const GRAVITY: &str = include_str!("../../data/scenes/gravity.toml");
+pub const TRACTION: &str = include_str!("../../data/scenes/traction.toml");
+pub const MANUFACTURED: &str = include_str!("../../data/scenes/manufactured.toml");
+pub const DISCS: &str = include_str!("../../data/scenes/colliding-discs.toml");
 
 /// L/c of the Dyka bar [s], from c = √(E/ρ).
 pub fn transit() -> f64 {
@@ -32,6 +38,12 @@ pub fn finished(scene: &Scene) -> Outcome {
     run(scene, &mut |_| {}).unwrap_or_else(|stopped| panic!("{}", stopped.breakdown))
 }
 
+/// One line of a run's summary.
+pub fn value(scene: &Scene, outcome: &Outcome, quantity: &str) -> f64 {
+    let lines = lme_mpm::summary::lines(scene, outcome, 0.0);
+    lines.iter().find(|line| line.quantity == quantity).unwrap().value
+}
+
 /// Takes `steps` steps of `model` from `state`, which has not been started.
 pub fn march<const D: usize>(model: &Model<D>, state: &mut State<D>, steps: usize) -> Cost {
     let mut cost = Cost::default();
@@ -45,12 +57,7 @@ pub fn march<const D: usize>(model: &Model<D>, state: &mut State<D>, steps: usiz
 
 /// The exponent of error ∝ h^slope by least squares on logarithms.
 pub fn slope(h: &[f64], error: &[f64]) -> f64 {
-    let n = h.len() as f64;
-    let (x, y): (Vec<f64>, Vec<f64>) =
-        h.iter().zip(error).map(|(h, e)| (libm::log(*h), libm::log(*e))).unzip();
-    let (mean_x, mean_y) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
-    let cross: f64 = x.iter().zip(&y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
-    cross / x.iter().map(|x| (x - mean_x) * (x - mean_x)).sum::<f64>()
+    observed_order(h, error).slope
 }
 
 /// Compares a text with `snapshots/NAME.snap`.
@@ -105,4 +112,18 @@ pub const BASES: [(&str, &[&str]); 6] = [
     ("lme γ = 0.8", &["basis.kind=lme", "basis.gamma=0.8"]),
     ("lme γ = 1.8", &["basis.kind=lme", "basis.gamma=1.8"]),
     ("lme γ = 4", &["basis.kind=lme", "basis.gamma=4"]),
+];
+
+/// Every scheme with its variants, with its name in snapshots and tables.
+pub const SCHEMES: [(&str, &[&str]); 7] = [
+    ("newmark", &["time.integrator=newmark"]),
+    ("newmark as printed", &["time.integrator=newmark", "time.reading=as-printed"]),
+    ("euler (first)", &["time.integrator=forward-euler", "time.stress_update=first"]),
+    ("euler (last)", &["time.integrator=forward-euler", "time.stress_update=last"]),
+    (
+        "euler (modified last)",
+        &["time.integrator=forward-euler", "time.stress_update=modified-last"],
+    ),
+    ("corrected euler", &["time.integrator=corrected-euler"]),
+    ("generalized-α (0.8)", &["time.integrator=generalized-alpha", "time.rho_b=0.8"]),
 ];

@@ -1,0 +1,216 @@
+//! The consistent mass matrix (13): its sums, its solutions, and its limits.
+#![allow(non_snake_case)]
+
+mod support;
+
+use approx::assert_relative_eq;
+use lme_mpm::basis::tabulate;
+use lme_mpm::continuum::mass::ConsistentMass;
+use lme_mpm::continuum::state::State;
+use lme_mpm::continuum::sums;
+use lme_mpm::cost::Cost;
+use lme_mpm::fault::Breakdown;
+use lme_mpm::model::Model;
+use lme_mpm::run::run;
+use lme_mpm::scene::Scene;
+use nalgebra::{DMatrix, DVector, SVector, Vector2};
+use support::*;
+
+/// A scene's particles, moved off their places, with masses that differ, and
+/// tabulated; nodes with m_I and p_I.
+fn loose<const D: usize>(scene: &Scene) -> (Model<D>, State<D>) {
+    let model = Model::<D>::of(scene);
+    let mut state = model.initial_state(scene);
+    let h = model.grid.h;
+    let particle = &mut state.particle;
+    for p in 0..particle.len() {
+        let s = p as f64;
+        for d in 0..D {
+            particle.x[p][d] += 0.2 * h[d] * (1.7 * s + d as f64).sin();
+            particle.v[p][d] = (0.3 * s + d as f64).sin();
+        }
+        particle.m[p] *= 1.0 + 0.3 * (0.9 * s).cos();
+    }
+    let x = &state.particle.x;
+    let (shape, scratch) = (&mut state.shape, &mut state.scratch);
+    tabulate(shape, scratch, &mut Cost::default(), &model.basis, &model.grid, x).unwrap();
+    sums::lumped_mass(&mut state.node, &state.particle, &state.shape);
+    sums::momentum(&mut state.node, &state.particle, &state.shape);
+    (model, state)
+}
+
+/// The bar with every basis and consistent mass.
+fn bar(sets: &[&str]) -> Scene {
+    dyka(&[sets, &["mass=consistent", "grid.cells=12", "grid.particles_per_cell=3"]].concat())
+}
+
+/// Spreading a momentum solves Σ_J m_IJ v_J = p_I: against the sum of (13) as a
+/// dense matrix, multiplied out. Its sum stays, so no momentum is lost.
+#[test]
+fn mass_solves_what_13_says() {
+    for (basis, sets) in BASES {
+        let scene = bar(&[sets, &["boundary.left=free", "grid.beyond.left=1"]].concat());
+        let (model, mut state) = loose::<1>(&scene);
+        let (node, particle, shape) = (&mut state.node, &state.particle, &state.shape);
+        let n = node.len();
+        let mut M = DMatrix::<f64>::zeros(n, n);
+        for (I, p, N_Ip, _) in shape.pairs() {
+            for (J, N_Jp, _) in shape.of(p) {
+                M[(I, J)] += N_Ip * particle.m[p] * N_Jp;
+            }
+        }
+        // Light nodes, seen from afar only, are lumped.
+        let light: Vec<bool> = (0..n).map(|I| M[(I, I)] < 0.25 * node.m[I]).collect();
+        for I in 0..n {
+            for J in 0..I {
+                if light[I] || light[J] {
+                    let both = M[(I, J)];
+                    M[(I, I)] += both;
+                    M[(J, J)] += both;
+                    M[(I, J)] = 0.0;
+                    M[(J, I)] = 0.0;
+                }
+            }
+        }
+        let before = node.p.clone();
+        let mut mass = ConsistentMass::blank(n, &model.fixed);
+        let mut cost = Cost::default();
+        mass.assemble(particle, shape, &node.m, &mut cost).unwrap();
+        mass.spread(&mut node.p, &node.m, &mut cost);
+        let v = DVector::from_fn(n, |I, _| if node.m[I] > 0.0 { node.p[I][0] / node.m[I] } else { 0.0 });
+        let scale = before.iter().map(|p| p[0].abs()).fold(0.0, f64::max);
+        for I in 0..n {
+            let product: f64 = (0..n).map(|J| M[(I, J)] * v[J]).sum();
+            assert!((product - before[I][0]).abs() < 1e-12 * scale, "{basis}, node {I}");
+        }
+        let total = |p: &[SVector<f64, 1>]| p.iter().map(|p| p[0]).sum::<f64>();
+        assert_relative_eq!(total(&node.p), total(&before), epsilon = 1e-12 * scale);
+        assert_eq!((cost.factorizations, cost.solves), (1, 1));
+    }
+}
+
+/// An affine velocity of the particles is found again at the nodes, which the
+/// lumped matrix cannot do; in 2D, with sides fixed in one component only.
+#[test]
+fn mass_finds_an_affine_velocity() {
+    let block = DISCS
+        .replace("mass = \"lumped\"", "mass = \"consistent\"")
+        .replace("radius = 0.2\n\n[grid]", "radius = 0.19\n\n[grid]");
+    let (_, mut state) = loose::<2>(&scene(&block, &["body.ball=[]", "grid.cells=[5,4]"]));
+    let (node, particle, shape) = (&mut state.node, &mut state.particle, &state.shape);
+    let affine = |x: &Vector2<f64>| Vector2::new(1.0 + 2.0 * x[0] - x[1], 0.5 * x[0] + 3.0 * x[1]);
+    let model = Model::<2>::of(&scene(&block, &["body.ball=[]", "grid.cells=[5,4]"]));
+    for p in 0..particle.len() {
+        particle.v[p] = affine(&particle.x[p]);
+    }
+    let mut mass = ConsistentMass::blank(node.len(), &[]);
+    let mut cost = Cost::default();
+    mass.assemble(particle, shape, &node.m, &mut cost).unwrap();
+    let mut worst = [0.0_f64; 2];
+    for (n, consistent) in [false, true].into_iter().enumerate() {
+        node.p.fill(Vector2::zeros());
+        sums::momentum(node, particle, shape);
+        if consistent {
+            mass.spread(&mut node.p, &node.m, &mut cost);
+        }
+        for I in 0..node.len() {
+            // Light nodes beyond the body are lumped.
+            let inside = model.grid.index(I).iter().zip([5, 4]).all(|(i, cells)| {
+                (1..=cells + 1).contains(i) // one cell beyond each free side
+            });
+            if inside && node.m[I] > 0.0 {
+                let off = node.p[I] / node.m[I] - affine(&model.grid.position(I));
+                worst[n] = worst[n].max(off.norm());
+            }
+        }
+    }
+    assert!(worst[0] > 0.05 && worst[1] < 1e-12, "{worst:?}");
+}
+
+/// One system for components that are fixed alike, one for each where they
+/// differ; a fixed component stays 0 and the other does not feel it.
+#[test]
+fn mass_of_components_fixed_differently() {
+    let strip = "title = 'strip'\nmethod = 'mpm'\nmass = 'consistent'\nbasis.kind = 'linear'\n\
+         body = { length = [1, 1], density = 1, youngs_modulus = 1, poisson_ratio = 0 }\n\
+         grid = { cells = [3, 2], particles_per_cell = [2, 2] }\n\
+         time = { integrator = 'newmark', cfl = 0.3, end = 1 }\n";
+    for (boundary, systems) in [("left = 'fixed'", 1), ("left = { x = 'fixed' }", 2)] {
+        let scene = scene(&format!("{strip}boundary.{boundary}\n"), &[]);
+        let (model, mut state) = loose::<2>(&scene);
+        let node = &mut state.node;
+        for (I, i) in &model.fixed {
+            node.p[*I][*i] = 0.0;
+        }
+        let mut mass = ConsistentMass::blank(node.len(), &model.fixed);
+        let mut cost = Cost::default();
+        mass.assemble(&state.particle, &state.shape, &node.m, &mut cost).unwrap();
+        mass.spread(&mut node.p, &node.m, &mut cost);
+        assert_eq!((cost.factorizations, cost.solves), (systems, 2));
+        for (I, i) in &model.fixed {
+            assert_eq!(node.p[*I][*i], 0.0);
+        }
+        let moving = node.p.iter().filter(|p| p[1] != 0.0).count();
+        let held = if systems == 1 { 3 } else { 0 };
+        assert_eq!(moving, node.m.iter().filter(|m| **m > 0.0).count() - held);
+    }
+}
+
+/// Fewer particles than free nodes cannot determine their velocities: named,
+/// with the step, before any step is taken.
+#[test]
+fn mass_singular_is_named() {
+    let one_each = ["mass=consistent", "grid.particles_per_cell=1", "boundary.left=free"];
+    let stopped = run(&dyka(&one_each), &mut |_| {}).unwrap_err();
+    let Breakdown::SingularMass { particles: 40, nodes: 41, moment } = stopped.breakdown else {
+        panic!("{}", stopped.breakdown);
+    };
+    assert_eq!(moment.step, 0);
+    let text = stopped.breakdown.to_string();
+    assert!(text.contains("singular") && text.contains("mass = \"lumped\""), "{text}");
+    // Two particles in each cell determine them.
+    run(&dyka(&["mass=consistent", "boundary.left=free", "time.cfl=0.3"]), &mut |_| {}).unwrap();
+}
+
+/// A particle that has passed a node by ε gives it the mass ε m_p. It is light,
+/// and lumped: no ε sends the particle off or takes a smaller time step.
+#[test]
+fn mass_of_a_light_node_does_no_harm() {
+    let calm = finished(&dyka(&["mass=consistent", "time.cfl=0.35"]));
+    let peak = |outcome: &lme_mpm::run::Outcome| {
+        let history = outcome.history.column("velocity_end").unwrap();
+        history.iter().fold(0.0, |peak: f64, v| peak.max(v.abs()))
+    };
+    for epsilon in [0.2, 1e-2, 1e-4, 1e-8, 1e-15] {
+        let scene = dyka(&["mass=consistent", "time.cfl=0.35"]);
+        let model = Model::<1>::of(&scene);
+        let mut state = model.initial_state(&scene);
+        let last = state.particle.len() - 1;
+        state.particle.x[last][0] = 0.1333 + epsilon * model.grid.h[0];
+        march(&model, &mut state, model.steps);
+        let fastest = state.particle.v.iter().fold(0.0, |peak: f64, v| peak.max(v[0].abs()));
+        assert!(fastest < 1.5 * peak(&calm), "ε = {epsilon}: {fastest}");
+    }
+}
+
+/// The figures of an independent prototype: local max-ent γ = 0.8, three
+/// particles per cell, cΔt/h = 0.35; velocity and stress within a tenth.
+#[test]
+fn mass_consistent_meets_the_prototype() {
+    let sets = [
+        "mass=consistent",
+        "basis.kind=lme",
+        "basis.gamma=0.8",
+        "grid.particles_per_cell=3",
+        "time.cfl=0.35",
+    ];
+    for (cells, v, stress) in [(40, 0.071, 0.153), (160, 0.063, 0.118)] {
+        let cells = format!("grid.cells={cells}");
+        let scene = dyka(&[&sets[..], &[cells.as_str()]].concat());
+        let outcome = finished(&scene);
+        let here_v = value(&scene, &outcome, "velocity_end_rms_relative");
+        let here_s = value(&scene, &outcome, "stress_three_quarter_rms_relative");
+        assert!((here_v / v - 1.0).abs() < 0.1, "{cells}: {here_v}");
+        assert!((here_s / stress - 1.0).abs() < 0.1, "{cells}: {here_s}");
+    }
+}
