@@ -14,7 +14,8 @@ const SIZE: (f64, f64) = (860.0, 420.0);
 
 /// Colour-blind safe (Okabe & Ito 2008); the exact curve stands behind.
 const EXACT: &str = "#999999";
-const COLOURS: [&str; 5] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9"];
+const COLOURS: [&str; 7] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];
 
 /// A curve's points.
 pub type Points = Vec<(f64, f64)>;

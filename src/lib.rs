@@ -11,12 +11,14 @@
 //! | paper | module | tests |
 //! |---|---|---|
 //! | §3.1, (2) (3) (17) | [`continuum::law`] | `tests/laws.rs` |
-//! | §3.3, (13) (14) (16) (18) (19) | [`continuum::sums`], [`continuum::shape`] | `tests/laws.rs` |
+//! | §3.3, (14) (16) (18) (19) | [`continuum::sums`], [`continuum::shape`] | `tests/laws.rs` |
+//! | §3.3, (10)-(13) (15) | [`continuum::mass`], [`continuum::loads`] | `tests/mass.rs`, `tests/loads.rs` |
 //! | §3.3, N_I and its table | [`basis`], [`grid`] | `tests/basis.rs` |
 //! | §5, (30)-(37) | [`basis::lme`], [`basis::support`] | `tests/lme.rs`, `tests/basis.rs` |
-//! | §4, (20)-(26) | [`time::euler`], [`time::generalized_alpha`] | `tests/integrators.rs` |
+//! | §4, (20)-(26) | [`time::euler`], [`time::generalized_alpha`] | `tests/integrators.rs`, `tests/matrix.rs` |
 //! | §4, (27)-(29) and the Algorithm | [`time::newmark`], [`time::steps`] | `tests/steps.rs`, `tests/convergence.rs`, `tests/regression.rs` |
 //! | §6, (39) | [`measure`] | `tests/analytical.rs` |
+//! | other exact solutions | [`exact::forced`], [`exact::mode`], [`exact::manufactured`] | `tests/loads.rs` |
 //! | App. A, (40)-(59) | [`exact::riemann`] | `tests/analytical.rs` |
 //! | doubts and misprints | [`reading`] | `tests/convergence.rs` |
 //!

@@ -37,7 +37,7 @@ impl Order {
 
 impl std::fmt::Display for Order {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:.3} ± {:.3}", self.slope, self.half_width)
+        write!(f, "{:.4} ± {:.4}", self.slope, self.half_width)
     }
 }
 

@@ -194,11 +194,7 @@ impl<const D: usize> Recorder<D> {
             ),
             exact,
             energy: 0.0,
-            work: loaded(scene).then(|| Work {
-                sum: 0.0,
-                moved: 0.0,
-                before: particle.x.clone(),
-            }),
+            work: loaded(scene).then(|| Work { sum: 0.0, moved: 0.0, before: particle.x.clone() }),
             frames: Vec::new(),
             reference: particle.x.clone(),
         }

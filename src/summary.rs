@@ -43,16 +43,14 @@ impl Scales {
             return Scales {
                 velocity: thrown,
                 stress: rho * c * thrown / 2.0,
-                displacement: thrown * transit / 4.0,
+                displacement: thrown * scene.body.length[0] / (4.0 * c),
             };
         }
         let (velocity, displacement) = match Exact::of(scene) {
             Ok(Exact::Linear { vibration: Some(v), .. }) => {
                 (v.velocity.abs(), v.velocity.abs() / (v.c * v.mode.k))
             }
-            Ok(Exact::Manufactured(m)) => {
-                ((m.amplitude * m.c * m.mode.k).abs(), m.amplitude.abs())
-            }
+            Ok(Exact::Manufactured(m)) => ((m.amplitude * m.c * m.mode.k).abs(), m.amplitude.abs()),
             _ => {
                 let body = scene.body_force.as_ref().map_or(0.0, |b| size(&b.acceleration));
                 let sides = scene.traction.iter().flat_map(|load| load.sides.iter().flatten());

@@ -46,8 +46,7 @@ fn vtu(particles: &Table) -> Result<Vec<u8>, Fault> {
         values.collect::<Vec<f64>>().into()
     };
     let axes = ["x", "y", "z"];
-    let vector =
-        |name: &str| together(axes.iter().map(|axis| format!("{name}_{axis}")).collect());
+    let vector = |name: &str| together(axes.iter().map(|axis| format!("{name}_{axis}")).collect());
     // Only the upper half of the symmetric stress is in the table.
     let tensor = (0..9).map(|n: usize| (n / 3, n % 3)).map(|(i, j)| {
         let (i, j) = (i.min(j), i.max(j));

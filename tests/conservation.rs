@@ -129,7 +129,8 @@ fn spinning(sets: &[&str]) -> (f64, f64) {
         .next()
         .unwrap()
         .to_string();
-    let scene = scene(&block, &[sets, &["grid.cells=[10,10]", "time.cfl=0.15", "time.end=2"]].concat());
+    let scene =
+        scene(&block, &[sets, &["grid.cells=[10,10]", "time.cfl=0.1", "time.end=2"]].concat());
     let model = Model::<2>::of(&scene);
     let mut state = model.initial_state(&scene);
     let particle = &mut state.particle;
@@ -153,7 +154,8 @@ fn spinning(sets: &[&str]) -> (f64, f64) {
 /// not: there Σ_p m_p x_p × Σ_I N_Ip a_I is not Σ_I x_I × f_I.
 #[test]
 fn conservation_of_angular_momentum_with_consistent_mass() {
-    let block = DISCS.replace("\n[[body.ball]]", "\n#").replace("centre =", "#").replace("radius =", "#");
+    let block =
+        DISCS.replace("\n[[body.ball]]", "\n#").replace("centre =", "#").replace("radius =", "#");
     let block = block.split("[[initial_velocity]]").next().unwrap();
     let close = "grid.beyond={ left = 0, right = 0, bottom = 0, top = 0 }";
     for (basis, more) in BASES.iter().filter(|(basis, _)| *basis != "ugimp") {
@@ -204,7 +206,9 @@ fn conservation_of_angular_momentum() {
 /// the swing of a coarse grid. Local max-ent loses less of it than linear.
 #[test]
 fn conservation_of_colliding_discs() {
-    let mut table = String::from("basis,least kinetic share,kinetic share at the end,energy drift,largest drift,momentum\n");
+    let mut table = String::from(
+        "basis,least kinetic share,kinetic share at the end,energy drift,largest drift,momentum\n",
+    );
     for (basis, sets) in BASES {
         let scene = scene(DISCS, sets);
         let outcome = finished(&scene);
@@ -227,8 +231,12 @@ fn conservation_of_colliding_discs() {
         // They part: each flies back the way it came.
         let back = *column("velocity_first").last().unwrap();
         assert!(back < 0.0, "{basis}: {back} {least} {end} {largest}");
-        writeln!(table, "{basis},{least:.3},{end:.3},{drift:.4},{largest:.4},{:.0e}", momentum.max(1e-16))
-            .unwrap();
+        writeln!(
+            table,
+            "{basis},{least:.3},{end:.3},{drift:.4},{largest:.4},{:.0e}",
+            momentum.max(1e-16)
+        )
+        .unwrap();
     }
     approve("discs__energy", &table);
 }

@@ -77,7 +77,10 @@ fn mass_solves_what_13_says() {
         let mut cost = Cost::default();
         mass.assemble(particle, shape, &node.m, &mut cost).unwrap();
         mass.spread(&mut node.p, &node.m, &mut cost);
-        let v = DVector::from_fn(n, |I, _| if node.m[I] > 0.0 { node.p[I][0] / node.m[I] } else { 0.0 });
+        let v = DVector::from_fn(
+            n,
+            |I, _| if node.m[I] > 0.0 { node.p[I][0] / node.m[I] } else { 0.0 },
+        );
         let scale = before.iter().map(|p| p[0].abs()).fold(0.0, f64::max);
         for I in 0..n {
             let product: f64 = (0..n).map(|J| M[(I, J)] * v[J]).sum();

@@ -147,3 +147,99 @@ fn dyka_convergence() {
     }
     approve("dyka__orders", &text);
 }
+
+/// What wins where (§6.1): the bases on the bar with both mass matrices, each at
+/// its own grid, with energy drift and counted cost beside the errors. The figures
+/// of the book's comparison.
+#[test]
+fn comparison_on_the_bar() {
+    let lumped = ["mass=lumped", "time.cfl=0.5"];
+    let consistent = ["mass=consistent", "time.cfl=0.2"];
+    let mut table = String::from(
+        "basis,mass,cells,velocity at L,stress at 3L/4,displacement field,largest energy drift,pairs per particle and step,steps\n",
+    );
+    let mut lists: Vec<(String, figure::Points)> = Vec::new();
+    for (basis, sets) in BASES.iter().filter(|(name, _)| !name.contains("1.8")) {
+        for (mass, mass_sets) in [("lumped", lumped), ("consistent", consistent)] {
+            let mut points = Vec::new();
+            for cells in [40, 80, 160] {
+                let cells_set = format!("grid.cells={cells}");
+                let scene = dyka(&[sets, &mass_sets[..], &[cells_set.as_str()]].concat());
+                let outcome = finished(&scene);
+                let of = |name: &str| value(&scene, &outcome, name);
+                let v = of("velocity_end_rms_relative");
+                let cost = outcome.cost;
+                let pairs = cost.particle_node_pairs as f64 / cost.basis_evaluations as f64;
+                writeln!(
+                    table,
+                    "{basis},{mass},{cells},{v:.4},{:.4},{:.5},{:.4},{pairs:.1},{}",
+                    of("stress_three_quarter_rms_relative"),
+                    of("displacement_field_rms_relative"),
+                    of("energy_drift_largest"),
+                    cost.steps
+                )
+                .unwrap();
+                points.push((f64::from(cells), v));
+            }
+            if ["linear", "bspline", "lme γ = 0.8"].contains(basis) {
+                lists.push((format!("{basis}, {mass}"), points));
+            }
+        }
+    }
+    approve("comparison__bar", &table);
+    let lists: Vec<(&str, figure::Points)> =
+        lists.iter().map(|(name, points)| (name.as_str(), points.clone())).collect();
+    let title = "Velocity error of the bar by basis and mass matrix";
+    approve_picture("comparison__bar_figure", figure::convergence(title, &lists));
+}
+
+/// The velocity of the bar's end: linear basis with the lumped mass matrix
+/// against local max-ent with the consistent one.
+#[test]
+fn comparison_histories() {
+    let best = ["mass=consistent", "time.cfl=0.2", "basis.kind=lme", "basis.gamma=0.8"];
+    let mut lists = Vec::new();
+    for (name, sets) in [("linear, lumped", &[][..]), ("lme γ = 0.8, consistent", &best)] {
+        let history = finished(&dyka(sets)).history;
+        let column = |name: &str| history.column(name).unwrap();
+        let t = column("t").into_iter().map(|t| t * 1e6);
+        lists.push((name.to_string(), t.zip(column("velocity_end")).collect()));
+    }
+    let title = "Velocity at the free end, 40 cells";
+    let svg = figure::curves(title, "time t [µs]", "velocity v [m/s]", &lists);
+    approve_picture("comparison__velocity_end", svg);
+}
+
+/// The manufactured motion of the bar's middle over two periods, by basis.
+#[test]
+fn comparison_across_cells() {
+    let linear = MANUFACTURED.replace("kind = \"lme\"\ngamma = 0.8", "kind = \"linear\"");
+    let mut lists = Vec::new();
+    for n in [0, 1, 3] {
+        let (name, sets) = BASES[n];
+        let sets = [sets, &["time.end=0.04", "output.every=20"]].concat();
+        let history = finished(&scene(&linear, &sets)).history;
+        let column = |name: &str| history.column(name).unwrap();
+        let points = column("t").into_iter().map(|t| t * 1e3).zip(column("displacement_middle"));
+        lists.push((name.to_string(), points.collect()));
+        if n == 3 {
+            let exact = column("displacement_middle_exact");
+            lists.push(("exact".into(), column("t").iter().map(|t| t * 1e3).zip(exact).collect()));
+        }
+    }
+    let svg = figure::curves(
+        "Manufactured motion: the middle of the bar",
+        "time t [ms]",
+        "displacement u [m]",
+        &lists,
+    );
+    approve_picture("manufactured__displacement", svg);
+}
+
+/// The discs when they touch.
+#[test]
+fn discs_figure() {
+    let scene = scene(DISCS, &["time.end=1.9"]);
+    let svg = figure::particles(&scene, &finished(&scene).particles, scene.time.end);
+    approve_picture("discs__contact", svg);
+}

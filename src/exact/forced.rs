@@ -61,11 +61,7 @@ impl Forced {
     /// there are reflections.
     pub fn at(&self, x: f64, t: f64) -> Fields {
         let (I, II) = (self.invariant(Family::I, x, t), self.invariant(Family::II, x, t));
-        Fields {
-            velocity: I.0 + II.0,
-            stress: self.Z * (II.0 - I.0),
-            displacement: I.1 + II.1,
-        }
+        Fields { velocity: I.0 + II.0, stress: self.Z * (II.0 - I.0), displacement: I.1 + II.1 }
     }
 
     /// R at (x, t), and ∫ R dt at x. Followed back from (x, t), the

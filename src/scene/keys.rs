@@ -136,7 +136,10 @@ pub const KEYS: &[Key] = &[
     ),
     may("output", "a table"),
     may("output.every", "a whole number from 1 up: record every so many steps; 1 without it"),
-    may("output.vtk", "in 2D and 3D: true writes the particles of every recorded step for ParaView"),
+    may(
+        "output.vtk",
+        "in 2D and 3D: true writes the particles of every recorded step for ParaView",
+    ),
 ];
 
 /// Keys whose value is a list of tables.

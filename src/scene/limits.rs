@@ -24,6 +24,8 @@ pub fn affordable(
     let pair_bytes = 8.0 * (2.0 + d) * scene.pairs_per_particle();
     let node_bytes = 8.0 * (1.0 + 3.0 * d);
     let rows = steps / scene.every as f64;
+    // A row of the table of particles, and its share of a file.
+    let frames = if scene.vtk { rows * particles * 8.0 * 50.0 } else { 0.0 };
     // A number in the table, as text in CSV, and as a point of a picture.
     let row_bytes = 60.0 * (4.0 + d + 2.0 * scene.probes.len() as f64);
     let space = particles * (particle_bytes + pair_bytes) + nodes * node_bytes;
@@ -38,6 +40,13 @@ pub fn affordable(
         let problem = format!("with time.cfl and grid.cells it asks for {steps:e} steps");
         let mut error = check.source.error("time.end", time.end.span(), problem);
         error.allowed = format!("at most {MOST_STEPS:e} steps");
+        return Err(error);
+    }
+    if frames > MEMORY {
+        let problem =
+            format!("{rows:e} frames of {particles:e} particles need {:e} GB", frames / 1e9);
+        let mut error = check.source.error("time.end", time.end.span(), problem);
+        error.allowed = format!("frames of at most {limit:.1} GB; see also output.every");
         return Err(error);
     }
     if rows * row_bytes > MEMORY {

@@ -56,13 +56,13 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
         &[("mpm", Method::Mpm)],
     )?;
     let masses = [("lumped", Mass::Lumped), ("consistent", Mass::Consistent)];
-    let mass =
-        check.choose("mass", file.mass.get_ref(), file.mass.span(), &masses)?;
+    let mass = check.choose("mass", file.mass.get_ref(), file.mass.span(), &masses)?;
     let body = body(&check, &file.body)?;
     let time = time(&check, &file.time)?;
     let boundary = boundary(&check, &file.boundary)?;
     let grid = grid(&check, &file.grid, &boundary, file.basis.kind.get_ref() == "ugimp")?;
     let basis = basis(&check, &file.basis, &grid)?;
+    filled(&check, &file.body.ball, &body, &grid)?;
     let motion = motion(&check, &file, &body, &grid, &boundary)?;
     let (body_force, traction) = loads::read(&check, &file, &body, &boundary)?;
     let probes = probes(&check, &file.probe, &body)?;
@@ -161,6 +161,31 @@ fn balls(check: &Check, file: &[FileBall], body: &Body) -> Result<Vec<Ball>, Box
     Ok(balls)
 }
 
+/// Every ball holds a particle.
+fn filled(
+    check: &Check,
+    file: &[FileBall],
+    body: &Body,
+    grid: &GridSpec,
+) -> Result<(), Box<SceneError>> {
+    for (n, (ball, entry)) in body.balls.iter().zip(file).enumerate() {
+        // From the centre to the particle place that is nearest along each axis.
+        let offset = |d: usize| {
+            let places = (grid.cells[d] * grid.particles_per_cell[d]) as f64;
+            let distance = body.length[d] / places;
+            let place = libm::floor(ball.centre[d] / distance).clamp(0.0, places - 1.0);
+            ball.centre[d] - (place + 0.5) * distance
+        };
+        let square: f64 = (0..check.dimension).map(|d| offset(d) * offset(d)).sum();
+        if square > ball.radius * ball.radius {
+            let problem = "no particle lies in this ball";
+            let key = format!("body.ball[{n}].radius");
+            return Err(check.source.error(&key, entry.radius.span(), problem));
+        }
+    }
+    Ok(())
+}
+
 /// Refuses a side or component that the scene has no axis for.
 pub fn axis_of(
     check: &Check,
@@ -254,18 +279,18 @@ fn motion(
 ) -> Result<Motion, Box<SceneError>> {
     let vibration = file.vibration.as_ref().map(|table| ("vibration", table.span()));
     let manufactured = file.manufactured.as_ref().map(|table| ("manufactured", table.span()));
-    let mut tables: Vec<(&str, Range<usize>)> = [vibration, manufactured].into_iter().flatten().collect();
+    let mut tables: Vec<(&str, Range<usize>)> =
+        [vibration, manufactured].into_iter().flatten().collect();
     let thrown = file.initial_velocity.first().map(|first| ("initial_velocity", first.from.span()));
     tables.extend(thrown);
     if let [(name, _), (other, span), ..] = tables.as_slice() {
         let problem = format!("the scene has `{name}`, and only one of them can set the motion");
         return Err(check.source.error(other, span.clone(), problem));
     }
-    if let Some((name, span)) = tables.first().filter(|(name, _)| *name != "initial_velocity") {
-        if check.dimension > 1 {
-            let problem = format!("the scene has {}", counted(check.dimension, "axis"));
-            return Err(check.source.error(name, span.clone(), problem));
-        }
+    let mode = tables.first().filter(|(name, _)| *name != "initial_velocity");
+    if let Some((name, span)) = mode.filter(|_| check.dimension > 1) {
+        let problem = format!("the scene has {}", counted(check.dimension, "axis"));
+        return Err(check.source.error(name, span.clone(), problem));
     }
     let number = |key: &str, mode: &Spanned<i64>| match *mode.get_ref() {
         n @ 1..=1000 => Ok(n as usize),
