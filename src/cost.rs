@@ -21,13 +21,15 @@ pub struct Cost {
     pub factorizations: u64,
     /// Solutions with it, one per component.
     pub solves: u64,
+    /// Nodes looked at in the search for neighbours.
+    pub candidates: u64,
     /// Bytes of state that one particle carries.
     pub bytes_per_particle: u64,
 }
 
 impl Cost {
     /// Every counter with its name, in the order of `cost.csv`.
-    pub fn named(&self) -> [(&'static str, u64); 10] {
+    pub fn named(&self) -> [(&'static str, u64); 11] {
         [
             ("steps", self.steps),
             ("basis_evaluations", self.basis_evaluations),
@@ -38,6 +40,7 @@ impl Cost {
             ("tractions", self.tractions),
             ("factorizations", self.factorizations),
             ("solves", self.solves),
+            ("candidates", self.candidates),
             ("bytes_per_particle", self.bytes_per_particle),
         ]
     }

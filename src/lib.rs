@@ -17,6 +17,7 @@
 //! | §5, (30)-(37) | [`basis::lme`], [`basis::support`] | `tests/lme.rs`, `tests/basis.rs` |
 //! | §4, (20)-(26) | [`time::euler`], [`time::generalized_alpha`] | `tests/integrators.rs`, `tests/matrix.rs` |
 //! | §4, (27)-(29) and the Algorithm | [`time::newmark`], [`time::steps`] | `tests/steps.rs`, `tests/convergence.rs`, `tests/regression.rs` |
+//! | §6.2 | [`otm`], [`basis::scattered`] | `tests/otm.rs` |
 //! | §6, (39) | [`measure`] | `tests/analytical.rs` |
 //! | other exact solutions | [`exact::forced`], [`exact::mode`], [`exact::manufactured`] | `tests/loads.rs` |
 //! | App. A, (40)-(59) | [`exact::riemann`] | `tests/analytical.rs` |
@@ -35,8 +36,10 @@ pub mod fault;
 pub mod figure;
 pub mod grid;
 pub mod history;
+pub mod lattice;
 pub mod measure;
 pub mod model;
+pub mod otm;
 pub mod points;
 pub mod reading;
 pub mod report;

@@ -1,7 +1,7 @@
 //! What is measured on a run (§6): the error (39), energy and momentum.
 
 use crate::continuum::law::LinearElastic;
-use crate::continuum::state::Particles;
+use crate::continuum::state::{Carriers, Particles};
 use nalgebra::SVector;
 
 // ANCHOR: rms
@@ -68,11 +68,6 @@ pub fn observed_order(h: &[f64], error: &[f64]) -> Order {
 // ANCHOR_END: observed_order
 
 // ANCHOR: energy
-/// ½ m_p |v_p|² (J).
-pub fn kinetic_energy_of<const D: usize>(particle: &Particles<D>, p: usize) -> f64 {
-    0.5 * particle.m[p] * particle.v[p].dot(&particle.v[p])
-}
-
 /// ½ σ_p : D⁻¹ : σ_p m_p / ρ_p (J).
 pub fn strain_energy_of<const D: usize>(
     particle: &Particles<D>,
@@ -82,9 +77,9 @@ pub fn strain_energy_of<const D: usize>(
     law.energy_density(&particle.sigma[p]) * (particle.m[p] / particle.rho[p])
 }
 
-/// Σ_p of the kinetic energy (J).
-pub fn kinetic_energy<const D: usize>(particle: &Particles<D>) -> f64 {
-    (0..particle.len()).map(|p| kinetic_energy_of(particle, p)).sum()
+/// Σ ½ m |v|² (J), over particles, or over the nodes of OTM.
+pub fn kinetic_energy<const D: usize>(Carriers { m, v, .. }: &Carriers<D>) -> f64 {
+    (0..m.len()).map(|n| 0.5 * m[n] * v[n].dot(&v[n])).sum()
 }
 
 /// Σ_p of the strain energy (J).
@@ -93,29 +88,25 @@ pub fn strain_energy<const D: usize>(particle: &Particles<D>, law: &LinearElasti
 }
 // ANCHOR_END: energy
 
-/// Σ_p m_p (x_i v_j − x_j v_i) about the body's lower corner (kg m²/s): one
+/// Σ m (x_i v_j − x_j v_i) about the body's lower corner (kg m²/s): one
 /// number in 2D, three in 3D (for x, y, z), none in 1D.
-pub fn angular_momentum<const D: usize>(particle: &Particles<D>) -> Vec<f64> {
+pub fn angular_momentum<const D: usize>(Carriers { m, x, v }: &Carriers<D>) -> Vec<f64> {
     let planes: &[(usize, usize)] = match D {
         1 => &[],
         2 => &[(0, 1)],
         _ => &[(1, 2), (2, 0), (0, 1)],
     };
     let about = |&(i, j): &(usize, usize)| {
-        let arm = |p: usize| {
-            let (x, v) = (&particle.x[p], &particle.v[p]);
-            particle.m[p] * (x[i] * v[j] - x[j] * v[i])
-        };
-        (0..particle.len()).map(arm).sum()
+        (0..m.len()).map(|n| m[n] * (x[n][i] * v[n][j] - x[n][j] * v[n][i])).sum()
     };
     planes.iter().map(about).collect()
 }
 
-/// Σ_p m_p v_p (kg m/s).
-pub fn momentum<const D: usize>(particle: &Particles<D>) -> SVector<f64, D> {
+/// Σ m v (kg m/s).
+pub fn momentum<const D: usize>(Carriers { m, v, .. }: &Carriers<D>) -> SVector<f64, D> {
     let mut sum = SVector::zeros();
-    for p in 0..particle.len() {
-        sum += particle.v[p] * particle.m[p];
+    for n in 0..m.len() {
+        sum += v[n] * m[n];
     }
     sum
 }

@@ -4,15 +4,16 @@
 
 use crate::basis::{Basis, Scratch, support};
 use crate::continuum::law::LinearElastic;
-use crate::continuum::loads::{BodyForce, Loads, Traction};
+use crate::continuum::loads::Loads;
 use crate::continuum::mass::ConsistentMass;
 use crate::continuum::shape::Shape;
 use crate::continuum::state::{Nodes, Particles, State};
 use crate::exact::Exact;
-use crate::grid::{Grid, odometer};
-use crate::scene::{Ball, Body, Mass, Motion, Scene};
+use crate::grid::Grid;
+use crate::lattice;
+use crate::scene::{Body, Mass, Method, Motion, Scene};
 use crate::time::Integrator;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// The fixed components of nodes, as pairs (I, i).
 pub type Fixed = [(usize, usize)];
@@ -27,6 +28,7 @@ pub struct Model<const D: usize> {
     pub fixed: Vec<(usize, usize)>,
     pub integrator: Integrator,
     pub loads: Option<Loads<D>>,
+    pub method: Method,
     pub mass: Mass,
     /// Δt (s).
     pub dt: f64,
@@ -104,27 +106,38 @@ impl<const D: usize> Model<D> {
         );
         let steps = scene.step_count();
         Model {
-            fixed: fixed(scene, &grid),
+            fixed: match scene.method {
+                Method::Mpm => fixed(scene, &grid),
+                Method::Otm => {
+                    let corners = lattice::corners(&grid, &lattice::places(scene));
+                    let number = |(I, i): (usize, usize)| {
+                        corners.binary_search(&I).ok().map(|number| (number, i))
+                    };
+                    fixed(scene, &grid).into_iter().filter_map(number).collect()
+                }
+            },
             grid,
             basis: scene.basis,
             law: LinearElastic::new(scene.body.youngs_modulus, scene.body.poisson_ratio),
             integrator: scene.time.integrator,
-            loads: loads(scene, &lattice::<D>(scene)),
+            loads: lattice::loads(scene, &lattice::places::<D>(scene)),
+            method: scene.method,
             mass: scene.mass,
             dt: scene.time.end / steps,
             steps: steps as usize,
         }
     }
 
-    /// The state at k = 0: particles at equal distances in every cell of the
-    /// body, each with an equal share of the cell's mass (unit thickness in
-    /// the missing directions), moving as its region says.
+    /// The state at k = 0: particles in every cell of the body, each with its
+    /// share of the cell's mass (unit thickness in the missing directions), moving
+    /// as its region says.
     pub fn initial_state(&self, scene: &Scene) -> State<D> {
-        let x: Vec<SVector<f64, D>> = lattice(scene).into_iter().map(|place| place.x).collect();
-        let per_cell = |d: usize| scene.grid.particles_per_cell[d] as f64;
-        let share: f64 = (0..D).map(|d| self.grid.h[d] / per_cell(d)).product();
-        let (count, rho) = (x.len(), scene.body.density);
-        let mut particle = Particles::at_rest(x, rho * share, rho);
+        let places = lattice::places::<D>(scene);
+        let (count, rho) = (places.len(), scene.body.density);
+        let mut particle = Particles::at_rest(places.iter().map(|place| place.x).collect(), rho);
+        for (m, place) in particle.m.iter_mut().zip(&places) {
+            *m = rho * place.volume;
+        }
         let exact = Exact::of(scene);
         for p in 0..particle.len() {
             let x_p = particle.x[p];
@@ -140,82 +153,23 @@ impl<const D: usize> Model<D> {
             }
         }
         let shape = Shape::blank(count);
-        let node = Nodes::blank(self.grid.nodes());
+        let node = match self.method {
+            Method::Mpm => Nodes::blank(self.grid.nodes()),
+            Method::Otm => {
+                particle.F = vec![SMatrix::identity(); count];
+                let x = lattice::corners(&self.grid, &places);
+                Nodes {
+                    x: x.into_iter().map(|I| self.grid.position(I)).collect(),
+                    ..Nodes::blank(0)
+                }
+            }
+        };
         let mass = match self.mass {
             Mass::Lumped => None,
             Mass::Consistent => Some(ConsistentMass::blank(node.len(), &self.fixed)),
         };
         State { particle, node, shape, mass, scratch: Scratch::default() }
     }
-}
-
-/// Where a particle stands at the start.
-struct Place<const D: usize> {
-    x: SVector<f64, D>,
-    /// Its number along each axis.
-    number: [usize; D],
-}
-
-/// Particles at equal distances in every cell of the body's box; with balls
-/// those inside one of them.
-fn lattice<const D: usize>(scene: &Scene) -> Vec<Place<D>> {
-    let per_cell: [usize; D] = std::array::from_fn(|d| scene.grid.particles_per_cell[d]);
-    let along = std::array::from_fn(|d| scene.grid.cells[d] * per_cell[d]);
-    let place = |number: [usize; D]| Place {
-        number,
-        x: SVector::from_fn(|d, _| {
-            let (cell, within) = (number[d] / per_cell[d], number[d] % per_cell[d]);
-            let xi = (within as f64 + 0.5) / per_cell[d] as f64;
-            (cell as f64 + xi) * (scene.body.length[d] / scene.grid.cells[d] as f64)
-        }),
-    };
-    let balls = &scene.body.balls;
-    let material = |place: &Place<D>| {
-        let inside = |ball: &Ball| {
-            let r: SVector<f64, D> = SVector::from_fn(|d, _| place.x[d] - ball.centre[d]);
-            r.dot(&r) <= ball.radius * ball.radius
-        };
-        balls.is_empty() || balls.iter().any(inside)
-    };
-    odometer(along).map(place).filter(material).collect()
-}
-
-/// The loads that the scene declares, tied to its particles.
-fn loads<const D: usize>(scene: &Scene, lattice: &[Place<D>]) -> Option<Loads<D>> {
-    let uniform = scene.body_force.as_ref().map(|body| BodyForce::Uniform {
-        b: SVector::from_fn(|d, _| body.acceleration[d]),
-        ramp: body.ramp,
-    });
-    let manufactured = match Exact::of(scene) {
-        Ok(Exact::Manufactured(solution)) => Some(BodyForce::Manufactured {
-            solution,
-            X: lattice.iter().map(|place| place.x[0]).collect(),
-        }),
-        _ => None,
-    };
-    let along = |d: usize| scene.grid.cells[d] * scene.grid.particles_per_cell[d];
-    let distance = |d: usize| scene.body.length[d] / along(d) as f64;
-    let traction = scene.traction.as_ref().map(|load| {
-        let mut layer: Vec<(usize, SVector<f64, D>)> = Vec::new();
-        for (p, place) in lattice.iter().enumerate() {
-            let mut force = SVector::<f64, D>::zeros();
-            for axis in 0..D {
-                let area: f64 = (0..D).filter(|d| *d != axis).map(distance).product();
-                for (upper, end) in [0, along(axis) - 1].into_iter().enumerate() {
-                    if place.number[axis] == end {
-                        let t: &[f64] = &load.sides[axis][upper];
-                        force += SVector::<f64, D>::from_fn(|d, _| t[d]) * area;
-                    }
-                }
-            }
-            if force != SVector::<f64, D>::zeros() {
-                layer.push((p, force));
-            }
-        }
-        Traction { layer, ramp: load.ramp }
-    });
-    let body = uniform.or(manufactured);
-    (body.is_some() || traction.is_some()).then_some(Loads { body, traction })
 }
 
 /// Nodes on or beyond a side with fixed components.

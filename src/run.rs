@@ -97,7 +97,8 @@ fn run_in<const D: usize>(
     let mut recorder = Recorder::new(scene, &model, &state.particle);
     let bytes = Particles::<D>::BYTES
         + model.basis.bytes_per_particle::<D>()
-        + model.integrator.bytes_per_particle::<D>();
+        + model.integrator.bytes_per_particle::<D>()
+        + model.method.bytes_per_particle::<D>();
     let mut cost = Cost { bytes_per_particle: bytes as u64, ..Cost::default() };
     match march(scene, &model, &mut state, &mut recorder, &mut cost, progress) {
         Err(breakdown) => Err(Box::new(Stopped { breakdown, history: recorder.history })),
@@ -124,13 +125,13 @@ fn march<const D: usize>(
     progress: &mut dyn FnMut(usize),
 ) -> Result<(), Breakdown> {
     time::start(state, model, cost)?;
-    recorder.record(scene, &state.particle, model, Moment::START)?;
+    recorder.record(scene, state, model, Moment::START)?;
     for step in 1..=model.steps {
         let moment = Moment { step, time: step as f64 * model.dt };
         time::advance(state, model, moment, cost)?;
         recorder.load(&state.particle, model, moment);
         if step % scene.every == 0 || step == model.steps {
-            recorder.record(scene, &state.particle, model, moment)?;
+            recorder.record(scene, state, model, moment)?;
         }
         progress(step);
     }
@@ -213,11 +214,12 @@ impl<const D: usize> Recorder<D> {
     fn record(
         &mut self,
         scene: &Scene,
-        particle: &Particles<D>,
+        state: &State<D>,
         model: &Model<D>,
         moment: Moment,
     ) -> Result<(), Breakdown> {
-        let kinetic = measure::kinetic_energy(particle);
+        let (particle, carriers) = (&state.particle, state.carriers());
+        let kinetic = measure::kinetic_energy(&carriers);
         let strain = measure::strain_energy(particle, &model.law);
         if !(kinetic + strain).is_finite() {
             let particle = most_energetic(particle, model);
@@ -241,10 +243,10 @@ impl<const D: usize> Recorder<D> {
         if let Some(work) = &self.work {
             self.history.push(work.sum);
         }
-        for p_i in measure::momentum(particle).iter() {
+        for p_i in measure::momentum(&carriers).iter() {
             self.history.push(*p_i);
         }
-        for l_i in measure::angular_momentum(particle) {
+        for l_i in measure::angular_momentum(&carriers) {
             self.history.push(l_i);
         }
         for follow in &self.follow {
@@ -288,8 +290,9 @@ fn nearest<const D: usize>(x: &[SVector<f64, D>], position: &SVector<f64, D>) ->
 }
 
 fn most_energetic<const D: usize>(particle: &Particles<D>, model: &Model<D>) -> usize {
-    let energy = |p| {
-        measure::kinetic_energy_of(particle, p) + measure::strain_energy_of(particle, &model.law, p)
+    let energy = |p: usize| {
+        let v: SVector<f64, D> = particle.v[p];
+        0.5 * particle.m[p] * v.dot(&v) + measure::strain_energy_of(particle, &model.law, p)
     };
     (0..particle.len()).max_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap_or(0)
 }

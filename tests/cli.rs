@@ -288,7 +288,12 @@ fn bad_ranges() {
         ("cfl", "cfl = 0.5", "cfl = 0", &["time.cfl", "above 0"]),
         ("end", "end = 1.0", "end = -1.0", &["time.end", "above 0"]),
         ("every", "every = 1", "every = 0", &["output.every", "from 1 up"]),
-        ("beyond", "right = 1", "right = -1", &["grid.beyond.right", "from 0 up"]),
+        (
+            "beyond",
+            "[basis]",
+            "beyond = { right = -1 }\n\n[basis]",
+            &["grid.beyond.right", "from 0 up"],
+        ),
         ("probe", "position = 0.1333", "position = 0.2", &["probe[0].position", "of the body"]),
         ("region", "to = 0.1333", "to = 0.2", &["initial_velocity[0].to", "inside the body"]),
         ("axes", "length = 0.1333", "length = [1, 1, 1, 1]", &["body.length", "1 to 3"]),
@@ -454,6 +459,139 @@ fn bad_basis_keys() {
     let sets: Vec<&str> = sets.split(' ').flat_map(|set| ["--set", set]).collect();
     let output = program(&dir, &[&["run", DYKA][..], &sets].concat());
     assert_fails(&output, 2, &["grid.cells", "GB of memory"]);
+}
+
+/// Loads, modes, balls, masses and methods that do not fit the scene.
+#[test]
+fn bad_loads_and_motions() {
+    let gravity = "\n[body_force]\nacceleration = 9.81\n";
+    let cases: [(&str, String, &[&str]); 15] = [
+        ("pull-fixed", "[traction]\nleft = 1e6\n".into(), &["traction.left", "0 where the side"]),
+        ("pull-top", "[traction]\ntop = 1e6\n".into(), &["traction.top", "1 axis"]),
+        ("pull-late", "[traction]\nright = 1\nramp = -1\n".into(), &["traction.ramp", "from 0 up"]),
+        ("push-nan", gravity.replace("9.81", "nan"), &["body_force.acceleration", "m/s²"]),
+        ("push-two", gravity.replace("9.81", "[1, 2]"), &["body_force.acceleration", "2 numbers"]),
+        ("push-none", "[body_force]\nramp = 1\n".into(), &["body_force.acceleration", "missing"]),
+        (
+            "two-motions",
+            "[vibration]\nmode = 1\nvelocity = 1\n".into(),
+            &["initial_velocity", "`vibration`", "only one"],
+        ),
+        (
+            "ball-1d",
+            "[[body.ball]]\ncentre = 0.1\nradius = 0.01\n".into(),
+            &["body.ball[0]", "1 axis"],
+        ),
+        ("vtk-1d", "vtk = true\n".into(), &["output.vtk", "nothing in 1D"]),
+        (
+            "mode-0",
+            "[vibration]\nmode = 0\nvelocity = 1\n".into(),
+            &["vibration.mode", "from 1 to"],
+        ),
+        (
+            "mode-far",
+            "[manufactured]\nmode = 1\namplitude = 0.1\n".into(),
+            &["manufactured.amplitude", "|A| k < 1"],
+        ),
+        (
+            "mode-pushed",
+            format!("[manufactured]\nmode = 1\namplitude = 1e-3\n{gravity}"),
+            &["body_force.acceleration", "brings its own"],
+        ),
+        ("mass-none", "mass".into(), &["mass", "\"consistent\""]),
+        (
+            "otm-euler",
+            "otm-euler".into(),
+            &["time.integrator", "central differences", "\"newmark\""],
+        ),
+        ("otm-ugimp", "otm-ugimp".into(), &["basis.kind", "moving nodes", "\"lme\""]),
+    ];
+    let good = fs::read_to_string(DYKA).unwrap();
+    for (name, more, words) in cases {
+        let dir = directory(&format!("bad-{name}"));
+        let bad = match more.as_str() {
+            "mass" => good.replace("\"lumped\"", "\"constant\""),
+            "otm-euler" => {
+                good.replace("\"mpm\"", "\"otm\"").replace("\"newmark\"", "\"corrected-euler\"")
+            }
+            "otm-ugimp" => good.replace("\"mpm\"", "\"otm\"").replace("\"linear\"", "\"ugimp\""),
+            // A scene with one motion keeps it; a mode takes its place.
+            _ if more.contains("mode = ") && !name.starts_with("two") => {
+                let start = good.find("[[initial_velocity]]").unwrap();
+                let end = good.find("[[probe]]").unwrap();
+                format!("{}{more}\n{}", &good[..start], &good[end..])
+            }
+            _ => format!("{good}{more}"),
+        };
+        fs::write(dir.join("bad.toml"), &bad).unwrap();
+        let output = program(&dir, &["run", "bad.toml", "--out", "out"]);
+        assert_fails(&output, 2, words);
+        assert_fails(&output, 2, &["bad.toml:"]);
+        assert_eq!(files(&dir), ["bad.toml"], "{name}: nothing may be written");
+    }
+}
+
+/// Balls must lie in the box and hold a particle.
+#[test]
+fn bad_balls() {
+    let dir = directory("bad-balls");
+    let discs = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/colliding-discs.toml");
+    for (set, words) in [
+        ("body.ball.0.radius=0.3", &["body.ball[0].radius", "inside the body's box"][..]),
+        ("body.ball.0.radius=0", &["body.ball[0].radius", "above 0"]),
+        ("body.ball.0.radius=1e-3", &["body.ball[0].radius", "no particle"]),
+        ("body.ball.1.centre=[2,2]", &["body.ball[1].centre", "a point of the body's box"]),
+        ("traction={right=[1,0]}", &["traction.right", "no plane side"]),
+    ] {
+        let output = program(&dir, &["run", discs, "--set", set, "--out", "out"]);
+        assert_fails(&output, 2, words);
+    }
+    assert!(files(&dir).is_empty());
+}
+
+/// A singular mass matrix ends the run by name.
+#[test]
+fn singular_mass_is_named() {
+    let dir = directory("singular");
+    let sets = "mass=consistent grid.particles_per_cell=1 boundary.left=free";
+    let sets: Vec<&str> = sets.split(' ').flat_map(|set| ["--set", set]).collect();
+    let output = program(&dir, &[&["run", DYKA, "--out", "out"][..], &sets].concat());
+    assert_fails(&output, 1, &["singular", "step 0", "40 particles", "41 nodes", "lumped"]);
+    assert_eq!(files(&dir.join("out")), ["history.failed.csv"]);
+}
+
+/// 2D writes its picture and, asked for it, the series for ParaView, which a reader
+/// opens; a later run in the same place leaves no old frame.
+#[test]
+fn discs_write_pictures_and_frames() {
+    let dir = directory("discs");
+    let discs = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/colliding-discs.toml");
+    let run = |sets: &[&str]| {
+        let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
+        let output = program(&dir, &[&["run", discs, "--out", "out"][..], &sets].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        files(&dir.join("out"))
+    };
+    let names = run(&["time.end=0.2", "output.vtk=true", "output.every=5"]);
+    let frames = names.iter().filter(|name| name.ends_with(".vtu")).count();
+    assert_eq!(frames, 6, "{names:?}"); // steps 0, 5, 10, 15, 20 and the last, 24
+    assert!(names.contains(&"particles.pvd".into()) && names.contains(&"particles.svg".into()));
+    let pvd = fs::read_to_string(dir.join("out/particles.pvd")).unwrap();
+    assert_eq!(pvd.matches("<DataSet timestep=").count(), frames);
+    let path = dir.join("out/particles_000003.vtu");
+    let vtk = vtkio::Vtk::import(&path).unwrap();
+    let vtkio::model::DataSet::UnstructuredGrid { pieces, .. } = vtk.data else {
+        panic!("an unstructured grid was written");
+    };
+    let piece = pieces[0].load_piece_data(None).unwrap();
+    assert_eq!(piece.num_points(), 416);
+    let vtkio::IOBuffer::F64(points) = &piece.points else { panic!("doubles were written") };
+    // At 0.13 s the discs have flown, and the first particle with them.
+    let csv = fs::read_to_string(dir.join("out/particles.csv")).unwrap();
+    let first: f64 = csv.lines().nth(1).unwrap().split(',').nth(1).unwrap().parse().unwrap();
+    assert!(points[0] < first && first - points[0] < 0.1 * 0.2, "{} and {first}", points[0]);
+    let names = run(&["time.end=0.1"]);
+    assert!(!names.iter().any(|name| name.starts_with("particles_")), "{names:?}");
 }
 
 /// `shape` refuses what a basis cannot serve, with the line of the file.

@@ -140,11 +140,11 @@ fn spinning(sets: &[&str]) -> (f64, f64) {
         let r = particle.x[p] - nalgebra::Vector2::new(0.5, 0.5);
         particle.v[p] = nalgebra::Vector2::new(-omega * r[1], omega * r[0]);
     }
-    let before = measure::angular_momentum(particle)[0];
-    let momentum_scale = measure::kinetic_energy(particle) / omega;
+    let before = measure::angular_momentum(&particle.carriers())[0];
+    let momentum_scale = measure::kinetic_energy(&particle.carriers()) / omega;
     march(&model, &mut state, model.steps);
-    let after = measure::angular_momentum(&state.particle)[0];
-    let momentum = measure::momentum(&state.particle);
+    let after = measure::angular_momentum(&state.carriers())[0];
+    let momentum = measure::momentum(&state.carriers());
     (after / before - 1.0, momentum.norm() / momentum_scale)
 }
 
@@ -171,9 +171,9 @@ fn conservation_of_angular_momentum_with_consistent_mass() {
                 let noise = nalgebra::Vector2::new((1.3 * s).sin(), (2.9 * s).cos());
                 particle.v[p] = (nalgebra::Vector2::new(-r[1], r[0]) + noise) * 0.02;
             }
-            let before = measure::angular_momentum(particle)[0];
+            let before = measure::angular_momentum(&particle.carriers())[0];
             march(&model, &mut state, 10);
-            let after = measure::angular_momentum(&state.particle)[0];
+            let after = measure::angular_momentum(&state.carriers())[0];
             let loss = (after / before - 1.0).abs();
             let kept = loss < 1e-12;
             assert_eq!(kept, mass == "consistent", "{basis}, {mass}: {loss:e}");

@@ -20,7 +20,7 @@ use lme_mpm::fault::{Breakdown, Moment};
 use lme_mpm::grid::Grid;
 use lme_mpm::model::Model;
 use lme_mpm::reading::StepEight;
-use lme_mpm::scene::Mass;
+use lme_mpm::scene::{Mass, Method};
 use lme_mpm::time::{Integrator, steps};
 use nalgebra::Vector1;
 
@@ -34,7 +34,7 @@ const F: [f64; 3] = [24.0, -28.0, 4.0];
 
 fn setup() -> (Particles<1>, Nodes<1>, Shape<1>) {
     let x = [0.25, 0.75, 1.5].map(Vector1::new).to_vec();
-    let mut particle = Particles::at_rest(x, 1.0, 1.0);
+    let mut particle = Particles::at_rest(x, 1.0);
     particle.m = vec![2.0, 4.0, 8.0];
     particle.rho = vec![2.0, 4.0, 8.0];
     particle.v = [1.0, 3.0, -2.0].map(Vector1::new).to_vec();
@@ -208,6 +208,7 @@ fn model(fixed: &[(usize, usize)], loads: Option<Loads<1>>) -> Model<1> {
         integrator: Integrator::CorrectedEuler,
         loads,
         mass: Mass::Lumped,
+        method: Method::Mpm,
         dt: DT,
         steps: 1,
     }

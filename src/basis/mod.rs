@@ -4,6 +4,7 @@
 pub mod bspline;
 pub mod linear;
 pub mod lme;
+pub mod scattered;
 pub mod support;
 pub mod tensor;
 pub mod ugimp;
@@ -13,6 +14,7 @@ use crate::cost::Cost;
 use crate::grid::{Grid, Located};
 use lme::{Failure, Lme};
 use nalgebra::SVector;
+use scattered::Bins;
 use tensor::Line;
 
 /// The basis of a scene.
@@ -54,6 +56,8 @@ pub struct Scratch<const D: usize> {
     nodes: Vec<usize>,
     /// λ h of each particle, from where the next search starts.
     pub lambda: Vec<SVector<f64, D>>,
+    /// Nodes that move, sorted for the search.
+    bins: Bins<D>,
 }
 
 /// A particle that the basis cannot serve, counted from 0.

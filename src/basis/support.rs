@@ -31,7 +31,7 @@ pub fn row<const D: usize>(
     at: &Located<D>,
     p: usize,
 ) -> Result<(), Failure> {
-    let Scratch { lme, nodes, lambda } = scratch;
+    let Scratch { lme, nodes, lambda, .. } = scratch;
     lme.clear(true);
     nodes.clear();
     for node in grid.around(at, reach) {

@@ -1,5 +1,6 @@
 //! Pointwise laws, without any loop over particles or nodes: compatibility (2),
 //! linear elasticity in rate form (3), and conservation of mass (17).
+#![allow(non_snake_case)]
 
 use nalgebra::{SMatrix, SVector};
 
@@ -68,6 +69,34 @@ impl LinearElastic {
     }
 }
 // ANCHOR_END: elastic
+
+// ANCHOR: increment
+/// f = 1 + G and det f of a displacement gradient G of one step (–).
+pub fn increment<const D: usize>(G: &SMatrix<f64, D, D>) -> (SMatrix<f64, D, D>, f64) {
+    let f = SMatrix::<f64, D, D>::identity() + G;
+    let minor =
+        |i: usize, j: usize, k: usize, l: usize| f[(i, k)] * f[(j, l)] - f[(i, l)] * f[(j, k)];
+    let J = match D {
+        1 => f[(0, 0)],
+        2 => minor(0, 1, 0, 1),
+        _ => {
+            f[(0, 0)] * minor(1, 2, 1, 2) - f[(0, 1)] * minor(1, 2, 0, 2)
+                + f[(0, 2)] * minor(1, 2, 0, 1)
+        }
+    };
+    (f, J)
+}
+
+/// Δε = sym(G (1 + G/2)⁻¹), the strain increment at the middle of a step of finite
+/// size (–); `None` where 1 + G/2 has no inverse.
+///
+/// In 1D it is G/(1 + G/2), the logarithm ln(1 + G) but for G³/12. Of a rotation,
+/// however large, it is zero.
+pub fn midpoint_strain<const D: usize>(G: &SMatrix<f64, D, D>) -> Option<SMatrix<f64, D, D>> {
+    let middle = (SMatrix::<f64, D, D>::identity() + G * 0.5).try_inverse()?;
+    Some(symmetric_part(&(G * middle)))
+}
+// ANCHOR_END: increment
 
 // ANCHOR: density
 /// (17) over one step: ρ ← ρ / (1 + tr Δε)  (kg/m³).

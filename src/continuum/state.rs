@@ -3,6 +3,7 @@
 //! One array per symbol of the paper; the index is the subscript, so `m_p` is
 //! `particle.m[p]` and `m_I` is `node.m[I]`. Positions are measured from the
 //! body's lower corner, so moving a scene in space changes no digit.
+#![allow(non_snake_case)]
 
 use super::mass::ConsistentMass;
 use super::shape::Shape;
@@ -27,11 +28,14 @@ pub struct Particles<const D: usize> {
     pub d_eps: Vec<SMatrix<f64, D, D>>,
     /// a_p, acceleration (m/s²); only with generalized-α, else empty.
     pub a: Vec<SVector<f64, D>>,
+    /// F_p, deformation gradient (–); only with OTM, else empty.
+    pub F: Vec<SMatrix<f64, D, D>>,
 }
 // ANCHOR_END: particles
 
 // ANCHOR: nodes
-/// Grid points: scratch paper, wiped in step 2 of every time step.
+/// Grid points: scratch paper, wiped in step 2 of every time step. With OTM they
+/// are the body's own and carry its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes<const D: usize> {
     /// m_I, lumped mass (kg).
@@ -45,6 +49,8 @@ pub struct Nodes<const D: usize> {
     /// a_I of k and of k+1 (m/s²); only with generalized-α, else empty.
     pub a: Vec<SVector<f64, D>>,
     pub a_next: Vec<SVector<f64, D>>,
+    /// x_I, position (m); only with OTM, whose nodes move, else empty.
+    pub x: Vec<SVector<f64, D>>,
 }
 // ANCHOR_END: nodes
 
@@ -60,25 +66,48 @@ pub struct State<const D: usize> {
     pub scratch: Scratch<D>,
 }
 
+/// What carries the body's mass and motion: its masses, places and velocities.
+pub struct Carriers<'a, const D: usize> {
+    pub m: &'a [f64],
+    pub x: &'a [SVector<f64, D>],
+    pub v: &'a [SVector<f64, D>],
+}
+
+impl<const D: usize> State<D> {
+    /// The particles of MPM, the nodes of OTM.
+    pub fn carriers(&self) -> Carriers<'_, D> {
+        match self.node.x.is_empty() {
+            true => self.particle.carriers(),
+            false => Carriers { m: &self.node.m, x: &self.node.x, v: &self.node.v },
+        }
+    }
+}
+
 impl<const D: usize> Particles<D> {
+    /// The particles as carriers of mass and motion.
+    pub fn carriers(&self) -> Carriers<'_, D> {
+        Carriers { m: &self.m, x: &self.x, v: &self.v }
+    }
+
     /// Bytes of state that one particle carries: 48 in 1D, where every tensor
     /// is a single number.
     pub const BYTES: usize = 2 * size_of::<f64>()
         + 2 * size_of::<SVector<f64, D>>()
         + 2 * size_of::<SMatrix<f64, D, D>>();
 
-    /// Particles at rest and free of stress at positions `x` (m), each with
-    /// mass `m` (kg) and density `rho` (kg/m³).
-    pub fn at_rest(x: Vec<SVector<f64, D>>, m: f64, rho: f64) -> Self {
+    /// Particles without mass, at rest and free of stress at positions `x` (m), with
+    /// density `rho` (kg/m³).
+    pub fn at_rest(x: Vec<SVector<f64, D>>, rho: f64) -> Self {
         let n = x.len();
         Particles {
-            m: vec![m; n],
+            m: vec![0.0; n],
             x,
             v: vec![SVector::zeros(); n],
             rho: vec![rho; n],
             sigma: vec![SMatrix::zeros(); n],
             d_eps: vec![SMatrix::zeros(); n],
             a: Vec::new(),
+            F: Vec::new(),
         }
     }
 
@@ -102,6 +131,7 @@ impl<const D: usize> Nodes<D> {
             f: vec![SVector::zeros(); n],
             a: Vec::new(),
             a_next: Vec::new(),
+            x: Vec::new(),
         }
     }
 

@@ -27,7 +27,7 @@ const RAMP: &str = "a time from 0 up in s over which it grows linearly; 0 withou
 /// All keys, in the order in which a scene is read aloud.
 pub const KEYS: &[Key] = &[
     must("title", "a text without control characters"),
-    must("method", "\"mpm\""),
+    must("method", "\"mpm\" or \"otm\""),
     must("mass", "\"lumped\" or \"consistent\""),
     must("body", "a table"),
     must(

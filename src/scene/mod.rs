@@ -50,6 +50,18 @@ pub struct Scene {
 pub enum Method {
     /// The material point method.
     Mpm,
+    /// The optimal transportation meshfree method.
+    Otm,
+}
+
+impl Method {
+    /// Bytes that the method keeps for each particle: F_p of OTM.
+    pub fn bytes_per_particle<const D: usize>(&self) -> usize {
+        match self {
+            Method::Mpm => 0,
+            Method::Otm => size_of::<nalgebra::SMatrix<f64, D, D>>(),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

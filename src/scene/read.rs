@@ -4,11 +4,12 @@ use super::check::{Check, counted};
 use super::file::*;
 use super::limits::affordable;
 use super::loads;
-use super::scheme::{basis, time};
+use super::scheme::{basis, otm, time};
 use super::*;
 use crate::exact::mode::Mode;
 use crate::exact::riemann::End;
 use crate::fault::SceneError;
+use crate::lattice::points;
 use crate::scene::source::Source;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -53,17 +54,21 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
         "method",
         file.method.get_ref(),
         file.method.span(),
-        &[("mpm", Method::Mpm)],
+        &[("mpm", Method::Mpm), ("otm", Method::Otm)],
     )?;
     let masses = [("lumped", Mass::Lumped), ("consistent", Mass::Consistent)];
     let mass = check.choose("mass", file.mass.get_ref(), file.mass.span(), &masses)?;
     let body = body(&check, &file.body)?;
     let time = time(&check, &file.time)?;
     let boundary = boundary(&check, &file.boundary)?;
-    let grid = grid(&check, &file.grid, &boundary, file.basis.kind.get_ref() == "ugimp")?;
+    let mut grid = grid(&check, &file.grid, &boundary, file.basis.kind.get_ref() == "ugimp")?;
+    if method == Method::Otm {
+        otm(&check, &file)?;
+        grid.beyond.fill([0, 0]);
+    }
     let basis = basis(&check, &file.basis, &grid)?;
     filled(&check, &file.body.ball, &body, &grid)?;
-    let motion = motion(&check, &file, &body, &grid, &boundary)?;
+    let motion = motion(&check, &file, method, &body, &grid, &boundary)?;
     let (body_force, traction) = loads::read(&check, &file, &body, &boundary)?;
     let probes = probes(&check, &file.probe, &body)?;
     let every = match &file.output.every {
@@ -273,6 +278,7 @@ fn grid(
 fn motion(
     check: &Check,
     file: &File,
+    method: Method,
     body: &Body,
     grid: &GridSpec,
     boundary: &[[Side; 2]],
@@ -309,12 +315,13 @@ fn motion(
         let amplitude = check.number(key, &table.amplitude, |a| (a * k).abs() < 1.0)?;
         return Ok(Motion::Manufactured { mode, amplitude });
     }
-    regions(check, &file.initial_velocity, body, grid).map(Motion::Regions)
+    regions(check, &file.initial_velocity, method, body, grid).map(Motion::Regions)
 }
 
 fn regions(
     check: &Check,
     file: &[FileRegion],
+    method: Method,
     body: &Body,
     grid: &GridSpec,
 ) -> Result<Vec<Region>, Box<SceneError>> {
@@ -341,11 +348,14 @@ fn regions(
             let problem = format!("this region overlaps initial_velocity[{other}]");
             return Err(check.source.error(&key("from"), entry.from.span(), problem));
         }
-        // Particles stand at equal distances, half of one from the ends.
+        // A region that no particle of the cell at its lower corner, nor of the next,
+        // stands in.
         let empty = |d: usize| {
-            let distance = body.length[d] / (grid.cells[d] * grid.particles_per_cell[d]) as f64;
-            let first = libm::ceil(region.from[d] / distance - 0.5).max(0.0);
-            (first + 0.5) * distance >= region.to[d]
+            let h = body.length[d] / grid.cells[d] as f64;
+            let cell = libm::floor(region.from[d] / h);
+            let points = points(method, grid.particles_per_cell[d]);
+            let inside = |x: f64| region.from[d] <= x && x < region.to[d];
+            !points.iter().any(|[xi, _]| inside((cell + xi) * h) || inside((cell + 1.0 + xi) * h))
         };
         if (0..check.dimension).any(empty) {
             let problem = "no particle lies in this region";

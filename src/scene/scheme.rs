@@ -1,7 +1,7 @@
 //! Basis and integrator of a scene: which keys each needs, and which it refuses.
 
 use super::check::Check;
-use super::file::{FileBasis, FileTime};
+use super::file::{File, FileBasis, FileTime};
 use super::{GridSpec, Time};
 use crate::basis::Basis;
 use crate::fault::SceneError;
@@ -98,4 +98,46 @@ pub fn basis(check: &Check, file: &FileBasis, grid: &GridSpec) -> Result<Basis, 
         cutoff = check.number("basis.cutoff", value, |tol| (0.0..1.0).contains(&tol))?;
     }
     Ok(Basis::Lme { gamma, cutoff })
+}
+
+/// What OTM cannot do, refused.
+pub fn otm(check: &Check, file: &File) -> Result<(), Box<SceneError>> {
+    let refuse = |key: &str, span: std::ops::Range<usize>, problem: &str, allowed: &str| {
+        let mut error = check.source.error(key, span, format!("with the method \"otm\" {problem}"));
+        error.allowed = allowed.to_string();
+        Err(error)
+    };
+    let kind = file.basis.kind.get_ref().as_str();
+    if !(kind == "lme" || (kind == "linear" && check.dimension == 1)) {
+        let problem = "the basis lives on moving nodes";
+        return refuse(
+            "basis.kind",
+            file.basis.kind.span(),
+            problem,
+            "\"lme\", in 1D also \"linear\"",
+        );
+    }
+    let integrator = &file.time.integrator;
+    if integrator.get_ref() != "newmark" {
+        let problem = "time goes by central differences";
+        return refuse("time.integrator", integrator.span(), problem, "\"newmark\"");
+    }
+    if let Some(reading) = &file.time.reading {
+        let problem = "there is no step 8 to read";
+        return refuse("time.reading", reading.span(), problem, "no such key");
+    }
+    if file.mass.get_ref() != "lumped" {
+        let problem = "the nodal mass is lumped";
+        return refuse("mass", file.mass.span(), problem, "\"lumped\"");
+    }
+    let per_cell = &file.grid.particles_per_cell;
+    if per_cell.get_ref().0.iter().any(|n| *n > 4) {
+        let problem = "particles are Gauss's points";
+        return refuse("grid.particles_per_cell", per_cell.span(), problem, "1, 2, 3 or 4");
+    }
+    if let Some((name, cells)) = file.grid.beyond.iter().next() {
+        let problem = "the nodes are the body's own, and none stands beyond it";
+        return refuse(&format!("grid.beyond.{name}"), cells.span(), problem, "no such key");
+    }
+    Ok(())
 }

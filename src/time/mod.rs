@@ -9,7 +9,9 @@ use crate::continuum::state::State;
 use crate::cost::Cost;
 use crate::fault::{Breakdown, Moment};
 use crate::model::Model;
+use crate::otm;
 use crate::reading::{StepEight, StressUpdate};
+use crate::scene::Method;
 
 /// The scheme that carries a scene through time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +47,7 @@ pub fn start<const D: usize>(
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
     match model.integrator {
+        _ if model.method == Method::Otm => otm::start(state, model, cost),
         Integrator::Newmark(_) => step(state, model, 0.0, Moment::START, cost),
         _ => steps::finite(&state.particle, Moment::START),
     }
@@ -71,6 +74,7 @@ fn step<const D: usize>(
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
     match model.integrator {
+        _ if model.method == Method::Otm => otm::step(state, model, dt, moment, cost),
         Integrator::Newmark(reading) => newmark::step(state, model, reading, dt, moment, cost),
         Integrator::ForwardEuler(order) => euler::forward(state, model, order, dt, moment, cost),
         Integrator::CorrectedEuler => euler::corrected(state, model, dt, moment, cost),
