@@ -13,7 +13,8 @@ use crate::continuum::state::{Nodes, Particles, State};
 use crate::continuum::sums;
 use crate::cost::Cost;
 use crate::fault::{Breakdown, Moment};
-use crate::model::{Fixed, Model};
+use crate::model::Model;
+use crate::time::steps::balance_forces;
 use nalgebra::SVector;
 
 // ANCHOR: otm_start
@@ -31,7 +32,7 @@ pub fn start<const D: usize>(
         list.clone_from(&nothing);
     }
     tabulate(state, model, Moment::START, cost)?;
-    let State { particle, node, shape, .. } = state;
+    let State { particle, node, shape, mass, .. } = state;
     sums::lumped_mass(node, particle, shape);
     sums::momentum(node, particle, shape);
     for &(a, i) in &model.fixed {
@@ -40,7 +41,7 @@ pub fn start<const D: usize>(
     for a in 0..node.len() {
         node.v[a] = node.p[a] / node.m[a];
     }
-    balance_forces(node, particle, shape, model, 0.0, cost);
+    balance_forces(node, mass, particle, shape, model, 0.0, cost);
     show_velocity(particle, node, shape);
     Ok(())
 }
@@ -56,14 +57,15 @@ pub fn step<const D: usize>(
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
     let State { particle, node, shape, .. } = state;
-    kick(node, 0.5 * dt); //                                     1
-    move_nodes(node, dt); //                                     2
-    move_particles(particle, node, shape, dt); //                3: N_ap of k
-    deform(particle, node, shape, model, dt, moment)?; //        4: N_ap of k
-    tabulate(state, model, moment, cost)?; //                    5: N_ap at k+1
-    let State { particle, node, shape, .. } = state;
-    balance_forces(node, particle, shape, model, moment.time, cost); // 6
-    kick(node, 0.5 * dt); //                                     7
+    kick(node, 0.5 * dt); // 1
+    move_nodes(node, dt); // 2
+    move_particles(particle, node, shape, dt); // 3: N_ap of k
+    deform(particle, node, shape, model, dt, moment)?; // 4: N_ap of k
+    tabulate(state, model, moment, cost)?; // 5: N_ap at k+1
+    let State { particle, node, shape, mass, .. } = state;
+    node.f.fill(SVector::zeros());
+    balance_forces(node, mass, particle, shape, model, moment.time, cost); // 6
+    kick(node, 0.5 * dt); // 7
     show_velocity(particle, node, shape);
     Ok(())
 }
@@ -126,26 +128,6 @@ pub fn deform<const D: usize>(
         particle.sigma[p] += model.law.stress_increment(&particle.d_eps[p]);
     }
     Ok(())
-}
-
-/// Step 6: f_a of (14) and (15), 0 where the boundary is fixed.
-fn balance_forces<const D: usize>(
-    node: &mut Nodes<D>,
-    particle: &Particles<D>,
-    shape: &Shape<D>,
-    model: &Model<D>,
-    t: f64,
-    cost: &mut Cost,
-) {
-    let fixed: &Fixed = &model.fixed;
-    node.f.fill(SVector::zeros());
-    sums::internal_force(node, particle, shape);
-    if let Some(loads) = &model.loads {
-        sums::external_force(node, particle, shape, loads, t, cost);
-    }
-    for &(a, i) in fixed {
-        node.f[a][i] = 0.0;
-    }
 }
 
 /// v_p = Σ_a v_a N_ap, for what is recorded; nothing is computed from it.

@@ -21,18 +21,18 @@ pub fn step<const D: usize>(
     moment: Moment,
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
-    let (law, fixed) = (&model.law, &model.fixed);
-    predict(particle, node, shape, dt); //              1: (27) (28)
-    discard(node); //                                   2
-    tabulate(shape, scratch, particle, model, moment, cost)?; // N_Ip at k+1
-    transfer(node, mass, particle, shape, moment, cost)?; //  3: (13)
-    impose_essential(node, mass, fixed, cost); //       4
-    increment_strain(particle, node, shape, dt); //     5: (16)
-    update_density(particle, moment)?; //               6: (17)
-    update_stress(particle, law); //                       (3)
-    balance_forces(node, mass, particle, shape, model, moment.time, cost); // 7: (14) (15) (18)
-    integrate_momentum(node, dt, reading); //           8
-    correct(particle, node, shape, dt); //              9: (29)
+    let (law, fixed, t) = (&model.law, &model.fixed, moment.time);
+    predict(particle, node, shape, dt); // 1: (27) (28)
+    discard(node); // 2
+    tabulate(shape, scratch, particle, model, moment, cost)?;
+    transfer(node, mass, particle, shape, moment, cost)?; // 3: (13)
+    impose_essential(node, mass, fixed, cost); // 4
+    increment_strain(particle, node, shape, dt); // 5: (16)
+    update_density(particle, moment)?; // 6: (17)
+    update_stress(particle, law); // (3)
+    balance_forces(node, mass, particle, shape, model, t, cost); // 7: (14) (15) (18)
+    integrate_momentum(node, dt, reading); // 8
+    correct(particle, node, shape, dt); // 9: (29)
     Ok(())
 }
 // ANCHOR_END: newmark
