@@ -45,6 +45,7 @@ pub mod reading;
 pub mod report;
 pub mod run;
 pub mod scene;
+pub mod study;
 pub mod summary;
 pub mod time;
 pub mod vtk;
