@@ -5,7 +5,7 @@ use crate::fault::{Breakdown, Fault};
 use crate::figure;
 use crate::history::{csv, prepare, shortest, write_all};
 use crate::run::{Stopped, run};
-use crate::scene::Scene;
+use crate::scene::{Mass, Scene};
 use crate::summary::{self, Line};
 use crate::vtk;
 use std::path::Path;
@@ -16,6 +16,9 @@ const FAILED: &str = "history.failed.csv";
 
 /// The particles at the end, in 2D and 3D.
 const PICTURE: &str = "particles.svg";
+
+/// The list of frames for ParaView.
+const SERIES: &str = "particles.pvd";
 
 /// Files of every complete run, besides one SVG for each probe.
 const FILES: [&str; 4] = ["history.csv", "particles.csv", "summary.csv", "cost.csv"];
@@ -69,8 +72,12 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
     write_all(dir, &[(FAILED.to_string(), stopped.history.csv()?)], &earlier(dir))?;
     let courant = scene.courant_number();
     let hint = match stopped.breakdown {
-        Breakdown::NoBasis { .. } => String::new(),
+        Breakdown::NoBasis { .. } | Breakdown::SingularMass { .. } => String::new(),
         Breakdown::LeftGrid { .. } | Breakdown::NotFinite { .. } if courant <= 1.0 => String::new(),
+        _ if scene.mass == Mass::Consistent => format!(
+            "the Courant number c Δt / h is {courant:.3}: try a smaller time.cfl, or more \
+             particles per cell for the consistent mass matrix; "
+        ),
         _ => format!("the Courant number c Δt / h is {courant:.3}: try a smaller time.cfl; "),
     };
     let left = dir.join(FAILED);
@@ -82,8 +89,13 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
 
 /// Refuses, before the run, a directory that stands where a file is to be.
 fn free_names(dir: &Path, scene: &Scene) -> Result<(), Fault> {
-    let pictures = scene.probes.iter().map(|probe| format!("{}.svg", probe.name));
-    for name in FILES.map(String::from).into_iter().chain([FAILED.to_string()]).chain(pictures) {
+    let mut names: Vec<String> = FILES.map(String::from).to_vec();
+    names.push(FAILED.to_string());
+    names.extend(scene.probes.iter().map(|probe| format!("{}.svg", probe.name)));
+    names.extend([PICTURE, SERIES].map(String::from).into_iter().filter(|_| scene.dimension() > 1));
+    let rows = scene.sizes().2 as usize / scene.every + 2;
+    names.extend((0..rows).filter(|_| scene.vtk).map(vtk::name));
+    for name in names {
         let path = dir.join(name);
         if path.is_dir() {
             let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
@@ -101,7 +113,7 @@ fn earlier(dir: &Path) -> Vec<String> {
     let columns = history.lines().next().unwrap_or("").split(',');
     let plain = |name: &&str| name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     files.extend(columns.filter(plain).map(|name| format!("{name}.svg")));
-    files.extend([PICTURE, "particles.pvd"].map(String::from));
+    files.extend([PICTURE, SERIES].map(String::from));
     let names = std::fs::read_dir(dir).into_iter().flatten().flatten();
     let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
     files.extend(names.filter(|name| vtk::is_frame(name)));

@@ -140,6 +140,41 @@ fn equations_of_the_book_are_indexed() {
     }
 }
 
+/// Every test that the book names exists: `like_this` in a sentence with "Test".
+#[test]
+fn named_tests_exist() {
+    let sources: String = files("tests", ".rs").into_iter().map(|(_, text)| text).collect();
+    let mut names = 0;
+    for (chapter, text) in chapters() {
+        for sentence in text.split("Test:").skip(1).chain(text.split("Tests:").skip(1)) {
+            let sentence = sentence.split("\n\n").next().unwrap();
+            for name in sentence.split('`').skip(1).step_by(2) {
+                let plain =
+                    name.chars().all(|c| c.is_ascii_lowercase() || c == '_' || c.is_ascii_digit());
+                if plain && name.contains('_') {
+                    assert!(sources.contains(&format!("fn {name}(")), "{chapter}: no test {name}");
+                    names += 1;
+                }
+            }
+        }
+    }
+    assert!(names > 10, "{names}");
+}
+
+/// Every snapshot belongs to a test that names it, whole or by its parts.
+#[test]
+fn snapshots_have_tests() {
+    let sources: String = files("tests", ".rs").into_iter().map(|(_, text)| text).collect();
+    for entry in fs::read_dir(root().join("snapshots")).unwrap() {
+        let file = entry.unwrap().file_name().to_string_lossy().into_owned();
+        let name = file.split(".snap").next().unwrap().to_string();
+        let stem = name.split("__").next().unwrap();
+        let made =
+            sources.contains(&format!("\"{name}\"")) || sources.contains(&format!("\"{stem}__{{"));
+        assert!(made, "snapshots/{file} belongs to no test");
+    }
+}
+
 /// Every anchor in the code is quoted by a chapter, and every quoted one exists.
 #[test]
 fn anchors_are_quoted() {

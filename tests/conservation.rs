@@ -11,7 +11,7 @@ use std::fmt::Write;
 use support::*;
 
 /// Momentum of a free body to n·ε with every scheme, basis and mass matrix, and
-/// the mass of each particle to the bit.
+/// the mass of each particle to its last digit.
 #[test]
 fn conservation_of_mass_and_momentum() {
     for (scheme, sets) in SCHEMES {
@@ -120,7 +120,7 @@ fn conservation_of_energy_needs_still_particles() {
     assert!((50.0..200.0).contains(&ratio), "{ratio}");
 }
 
-/// A square block that spins about its own centre, no loads.
+/// A disc that spins about its own centre, no loads.
 fn spinning(sets: &[&str]) -> (f64, f64) {
     let block = DISCS
         .replace("centre = [0.2, 0.2]\nradius = 0.2", "centre = [0.5, 0.5]\nradius = 0.3")
@@ -183,7 +183,7 @@ fn conservation_of_angular_momentum_with_consistent_mass() {
 
 /// Angular momentum of a spinning disc, by scheme and mass. Its rim is full of
 /// nodes that see it from afar. With the consistent mass matrix they are light
-/// and lumped, so that here it keeps no more than the lumped one.
+/// and lumped: the linear basis still loses less with it, the wide ones lose more.
 #[test]
 fn conservation_of_angular_momentum() {
     let mut table = String::from("basis,scheme,lumped,consistent\n");
@@ -192,9 +192,11 @@ fn conservation_of_angular_momentum() {
             let lumped = spinning(&[sets, more].concat());
             let consistent = spinning(&[sets, more, &["mass=consistent"]].concat());
             for (loss, momentum) in [lumped, consistent] {
-                assert!(loss.abs() < 0.3, "{basis}, {scheme}: {loss:e}");
+                assert!(loss < 0.0 && loss > -0.2, "{basis}, {scheme}: {loss:e}");
                 assert!(momentum < 1e-10, "{basis}, {scheme}: {momentum:e}");
             }
+            let better = consistent.0.abs() < lumped.0.abs();
+            assert_eq!(better, basis == "linear", "{basis}, {scheme}");
             writeln!(table, "{basis},{scheme},{:.1e},{:.1e}", lumped.0, consistent.0).unwrap();
         }
     }
@@ -203,7 +205,7 @@ fn conservation_of_angular_momentum() {
 
 /// Two discs collide and part: momentum and angular momentum stay 0 by symmetry,
 /// kinetic energy turns into strain energy and back, and the total stays within
-/// the swing of a coarse grid. Local max-ent loses less of it than linear.
+/// the swing of a coarse grid.
 #[test]
 fn conservation_of_colliding_discs() {
     let mut table = String::from(

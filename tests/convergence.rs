@@ -156,7 +156,11 @@ fn order_in_space_of_every_basis() {
                 // The bound of an independent prototype.
                 assert!(fine_v <= 1.1e-4, "{name}: {fine_v:e}");
             }
-            assert!(v.slope > 0.5 && u.slope > 1.4, "{basis}, {mass}: {v}, {u}");
+            // Bounds for the wide bases, whose lines are not straight: the errors at 80
+            // cells are what counts.
+            let name = format!("{basis}, {mass}: {v}, {u}, {fine_v:e}, {fine_u:e}");
+            assert!(v.slope > 0.5 && u.slope > 1.4, "{name}");
+            assert!(fine_v < 7e-4 && fine_u < 7e-5, "{name}");
         }
     }
     approve("order__in_space", &table);

@@ -108,9 +108,10 @@ fn matrix_of_histories() {
     }
 }
 
-/// With the consistent mass matrix no scheme filters the velocity on its way to
-/// the nodes and back: stress-first, stress-last and modified-last have one
-/// stress history, up to the displacement of the particles.
+/// With the consistent mass matrix and the linear basis nothing filters the velocity
+/// on its way to the nodes and back: stress-first and stress-last have one stress
+/// history, up to the displacement of the particles. (Bases with light nodes, which
+/// are lumped, keep a filter there.)
 #[test]
 fn matrix_stress_last_joins_the_leapfrog() {
     for (mass, joined) in [("consistent", true), ("lumped", false)] {

@@ -191,7 +191,7 @@ impl<const D: usize> ConsistentMass<D> {
     ///
     /// Afterwards q_I / m_I is the nodal velocity or acceleration that solves
     /// (12), so that all that follows is written once for both mass matrices.
-    /// Since Σ_J m_IJ = m_I, the sum Σ_I q_I stays what it was.
+    /// Since Σ_J m_IJ = m_I, the sum Σ_I q_I of a free body stays what it was.
     pub fn spread(&mut self, q: &mut [SVector<f64, D>], m: &[f64], cost: &mut Cost) {
         for i in 0..D {
             for I in 0..m.len() {

@@ -25,6 +25,10 @@ pub fn read(
         loads.0 = Some(BodyForce { acceleration, ramp });
     }
     if let Some(table) = &file.traction {
+        if let (None, Some(ramp)) = (by_name(table).next(), &table.ramp) {
+            let problem = "there is no side with a traction";
+            return Err(check.source.error("traction.ramp", ramp.span(), problem));
+        }
         let nothing = vec![0.0; check.dimension];
         let mut sides = vec![[nothing.clone(), nothing]; check.dimension];
         for (name, value) in by_name(table) {
@@ -32,8 +36,11 @@ pub fn read(
             let axis = axis_of(check, key.clone(), value.span(), side_axis(name))?;
             let upper = usize::from(AXES[axis].1[1] == name);
             let held = |i: usize| boundary[axis][upper].fixed[i];
-            sides[axis][upper] =
-                check.axes(&key, value, |i, t| t.is_finite() && (t == 0.0 || !held(i)))?;
+            sides[axis][upper] = check.axes(&key, value, |_, t| t.is_finite())?;
+            if (0..check.dimension).any(|i| held(i) && sides[axis][upper][i] != 0.0) {
+                let problem = "the side is fixed there";
+                return Err(check.source.error(&key, value.span(), problem));
+            }
             unforced(check, file, &key, value.span())?;
             if !body.balls.is_empty() {
                 let problem = "a body of balls has no plane side to load";

@@ -20,7 +20,7 @@ pub const AXES: [(&str, [&str; 2]); 3] =
     [("x", ["left", "right"]), ("y", ["bottom", "top"]), ("z", ["back", "front"])];
 
 /// Names that columns and files of a run have already.
-const TAKEN: [&str; 16] = [
+const TAKEN: [&str; 18] = [
     "step",
     "t",
     "kinetic_energy",
@@ -36,6 +36,8 @@ const TAKEN: [&str; 16] = [
     "angular_momentum_y",
     "angular_momentum_z",
     "displacement_field",
+    "velocity_field",
+    "stress_field",
     "energy",
 ];
 
@@ -81,7 +83,7 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
     };
 
     let vtk = file.output.vtk.as_ref().is_some_and(|vtk| *vtk.get_ref());
-    if let Some(value) = file.output.vtk.as_ref().filter(|_| dimension == 1) {
+    if let Some(value) = file.output.vtk.as_ref().filter(|vtk| dimension == 1 && *vtk.get_ref()) {
         let problem = "it means nothing in 1D";
         return Err(source.error("output.vtk", value.span(), problem));
     }
@@ -185,7 +187,9 @@ fn filled(
         if square > ball.radius * ball.radius {
             let problem = "no particle lies in this ball";
             let key = format!("body.ball[{n}].radius");
-            return Err(check.source.error(&key, entry.radius.span(), problem));
+            let mut error = check.source.error(&key, entry.radius.span(), problem);
+            error.allowed = format!("here a radius of at least {:e} m", libm::sqrt(square));
+            return Err(error);
         }
     }
     Ok(())
@@ -302,13 +306,26 @@ fn motion(
         n @ 1..=1000 => Ok(n as usize),
         n => Err(check.source.error(key, mode.span(), format!("{n} is out of range"))),
     };
+    // Two particles for each half wave, or it is another mode that starts.
+    let resolved = |key: &str, mode: &Spanned<i64>, n: usize| {
+        let places = grid.cells[0] * grid.particles_per_cell[0];
+        match 2 * n <= places {
+            true => Ok(n),
+            false => {
+                let problem = format!("{places} particles cannot show mode {n}");
+                Err(check.source.error(key, mode.span(), problem))
+            }
+        }
+    };
     if let Some(table) = file.vibration.as_ref().map(Spanned::get_ref) {
         let mode = number("vibration.mode", &table.mode)?;
+        let mode = resolved("vibration.mode", &table.mode, mode)?;
         let velocity = check.number("vibration.velocity", &table.velocity, |_| true)?;
         return Ok(Motion::Vibration { mode, velocity });
     }
     if let Some(table) = file.manufactured.as_ref().map(Spanned::get_ref) {
         let mode = number("manufactured.mode", &table.mode)?;
+        let mode = resolved("manufactured.mode", &table.mode, mode)?;
         let ends = [0, 1].map(|upper: usize| End::of(&boundary[0][upper]));
         let k = Mode::new(ends, mode, body.length[0]).k;
         let key = "manufactured.amplitude";

@@ -5,6 +5,7 @@
 use super::steps::*;
 use crate::continuum::shape::Shape;
 use crate::continuum::state::{Nodes, Particles, State};
+use crate::continuum::sums;
 use crate::cost::Cost;
 use crate::fault::{Breakdown, Moment};
 use crate::model::Model;
@@ -30,6 +31,25 @@ impl Parameters {
     }
 }
 // ANCHOR_END: alpha_parameters
+
+// ANCHOR: generalized_alpha_start
+/// a_p at k = 0 under loads: that of the forces at once. Without it the old
+/// acceleration of the first step would be 0, and the momentum off by ½ F Δt for
+/// ever.
+pub fn start<const D: usize>(
+    State { particle, node, shape, mass, scratch }: &mut State<D>,
+    model: &Model<D>,
+    cost: &mut Cost,
+) -> Result<(), Breakdown> {
+    discard(node);
+    tabulate(shape, scratch, particle, model, Moment::START, cost)?;
+    transfer(node, mass, particle, shape, Moment::START, cost)?;
+    balance_forces(node, mass, particle, shape, model, 0.0, cost);
+    let a_p = (0..particle.len()).map(|p| sums::to_particle(&node.f, node, shape, p));
+    particle.a = a_p.collect();
+    Ok(())
+}
+// ANCHOR_END: generalized_alpha_start
 
 // ANCHOR: generalized_alpha
 /// One time step, k → k+1.

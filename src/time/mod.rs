@@ -40,7 +40,8 @@ impl Integrator {
 }
 
 /// What a scheme needs at k = 0: with Newmark nodal values, by one time step with
-/// Δt = 0, in which nothing moves; with the others nothing.
+/// Δt = 0, in which nothing moves; with generalized-α the acceleration of loads
+/// that act at once; with the others nothing.
 pub fn start<const D: usize>(
     state: &mut State<D>,
     model: &Model<D>,
@@ -49,6 +50,9 @@ pub fn start<const D: usize>(
     match model.integrator {
         _ if model.method == Method::Otm => otm::start(state, model, cost),
         Integrator::Newmark(_) => step(state, model, 0.0, Moment::START, cost),
+        Integrator::GeneralizedAlpha { .. } if model.loads.is_some() => {
+            generalized_alpha::start(state, model, cost)
+        }
         _ => steps::finite(&state.particle, Moment::START),
     }
 }
