@@ -134,6 +134,16 @@ pub enum Fault {
     Points { path: String, line: u64, problem: String, allowed: String },
     #[error("{argument}: {problem}; allowed: {allowed}")]
     Argument { argument: &'static str, problem: String, allowed: &'static str },
+    #[error(
+        "the time step is too large: c Δt / h is {courant:.4}, and {largest:.4} is the most that \
+         stays bounded; set a smaller time.cfl, or time.fraction_of_critical = 0.9, or \
+         time.allow_unstable = true to see it blow up"
+    )]
+    Unstable { courant: f64, largest: f64 },
+    #[error(
+        "no configuration measured reaches a {quantity} error of {error}: the best has {best:.2e}"
+    )]
+    NothingReaches { quantity: &'static str, error: f64, best: f64 },
     #[error("no exact solution is known for this scene: {why}")]
     NoExact { why: &'static str },
     #[error("{breakdown}\n{advice}")]

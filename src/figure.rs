@@ -14,8 +14,10 @@ const SIZE: (f64, f64) = (860.0, 420.0);
 
 /// Colour-blind safe (Okabe & Ito 2008); the exact curve stands behind.
 const EXACT: &str = "#999999";
-const COLOURS: [&str; 7] =
-    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];
+const COLOURS: [&str; 10] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#882255",
+    "#999933", "#44aa99",
+];
 
 /// A curve's points.
 pub type Points = Vec<(f64, f64)>;
@@ -175,6 +177,78 @@ pub fn convergence(title: &str, lists: &[(&str, Points)]) -> String {
         title: title.to_string(),
         x_label: "cells [–]".to_string(),
         y_label: "relative error [–]".to_string(),
+        log: true,
+    };
+    draw(lists.iter().enumerate().map(curve).collect(), frame)
+}
+
+/// A point of a work-precision diagram: what it took, its relative error, and the
+/// group that gives its colour; no error for a run that failed.
+pub struct Work {
+    pub work: f64,
+    pub error: Option<f64>,
+    pub group: String,
+}
+
+/// Error against work, both logarithmic: one colour for each group, the Pareto front
+/// as a line, failed runs as crosses above all others.
+pub fn work_precision(title: &str, x_label: &str, works: &[Work], front: &Points) -> String {
+    let worst = works.iter().filter_map(|work| work.error).fold(0.0, f64::max);
+    let mut groups: Vec<&str> = Vec::new();
+    for work in works {
+        if !groups.contains(&work.group.as_str()) {
+            groups.push(&work.group);
+        }
+    }
+    let mut plots: Vec<Plot> = Vec::new();
+    if front.len() > 1 {
+        let line = LinePlot::new().with_data(front.clone()).with_color("#000000");
+        plots.push(Plot::from(line.with_stroke_width(1.5).with_legend("nobody is better")));
+    }
+    for (n, group) in groups.iter().enumerate() {
+        let own = works.iter().filter(|work| work.group == *group);
+        let points: Points =
+            own.filter_map(|work| work.error.map(|error| (work.work, error))).collect();
+        if !points.is_empty() {
+            let scatter = ScatterPlot::new().with_data(points).with_size(3.5);
+            let scatter = scatter.with_color(COLOURS[n % COLOURS.len()]);
+            plots.push(scatter.with_legend(*group).into());
+        }
+    }
+    let failed: Points =
+        works.iter().filter(|work| work.error.is_none()).map(|w| (w.work, 2.0 * worst)).collect();
+    if !failed.is_empty() && worst > 0.0 {
+        let scatter = ScatterPlot::new().with_data(failed).with_size(3.5).with_color("#d00000");
+        plots.push(scatter.with_marker(MarkerShape::Cross).with_legend("failed").into());
+    }
+    let layout = Layout::auto_from_plots(&plots)
+        .with_width(SIZE.0)
+        .with_height(SIZE.1)
+        .with_title(title)
+        .with_x_label(x_label)
+        .with_y_label("relative error [–]")
+        .with_log_scale()
+        .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_title_size(16)
+        .with_label_size(14)
+        .with_tick_size(12)
+        .with_legend_position(LegendPosition::OutsideRightTop);
+    own_ids(&render_to_svg(plots, layout))
+}
+
+/// Curves with names, both axes logarithmic.
+pub fn log_curves(title: &str, x_label: &str, y_label: &str, lists: &[(String, Points)]) -> String {
+    let curve = |(n, (name, points)): (usize, &(String, Points))| Curve {
+        points: points.clone(),
+        colour: COLOURS[n % COLOURS.len()],
+        width: 2.0,
+        legend: name.clone(),
+    };
+    let frame = Frame {
+        title: title.to_string(),
+        x_label: x_label.to_string(),
+        y_label: y_label.to_string(),
         log: true,
     };
     draw(lists.iter().enumerate().map(curve).collect(), frame)

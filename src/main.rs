@@ -1,5 +1,7 @@
 //! The command line. No numerics here.
 
+mod studies;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -78,6 +80,101 @@ enum Command {
         after_help = "Example:\n  lme-mpm shape --basis lme --spacing 0.1 --gamma 0.8 --nodes nodes.csv --points points.csv"
     )]
     Shape(ShapeArguments),
+    /// Measure the trade of speed for accuracy on a scene
+    ///
+    /// Runs many configurations three times each and writes trade.csv (errors,
+    /// energy drift, counted cost, wall time), cheapest.csv, and a work-precision
+    /// diagram for each quantity. runs.csv is its log: a study that was interrupted
+    /// goes on where it stopped.
+    #[command(
+        after_help = "Example:\n  lme-mpm trade --out out/trade\n  lme-mpm trade --list | parallel --jobs 2 '{}' '>' 'rows/{#}.csv'\n  lme-mpm trade --out out/trade --merge rows/*.csv"
+    )]
+    Trade(TradeArguments),
+    /// Find the cheapest configuration that reaches an error on a scene
+    ///
+    /// Measures as `trade` does, prints the evidence, and writes
+    /// recommended.toml, a scene file ready to run.
+    #[command(
+        after_help = "Example:\n  lme-mpm recommend data/scenes/vibration.toml --error 1% --quantity displacement"
+    )]
+    Recommend {
+        /// The scene file (TOML, SI units); it needs an exact solution
+        scene: PathBuf,
+        /// The relative error to reach, as 1% or 0.01
+        #[arg(long, value_parser = percent)]
+        error: f64,
+        /// Which error
+        #[arg(long, default_value = "velocity")]
+        quantity: QuantityName,
+        /// Where to write; out/recommend/<scene name> without it
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Threads; each run has one of its own
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+    },
+    /// Study the parameter γ of local max-ent on the bar
+    ///
+    /// Writes gamma.csv and pictures: errors, overshoot, total variation,
+    /// dispersion, energy drift, cost and the largest stable time step against γ,
+    /// for MPM with both mass matrices and for OTM.
+    #[command(after_help = "Example:\n  lme-mpm gamma --out out/gamma")]
+    Gamma {
+        /// Where to write
+        #[arg(long, value_name = "DIR", default_value = "out/gamma")]
+        out: PathBuf,
+        /// Threads; each run has one of its own
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+    },
+    /// Map the largest stable time step, predicted and measured
+    ///
+    /// Writes stability.csv for every basis, integrator, mass, number of particles
+    /// per cell and offset on the grid of a scene.
+    #[command(after_help = "Example:\n  lme-mpm stability --out out/stability --jobs 2")]
+    Stability {
+        /// The scene file; the built-in bar on 10 cells without it
+        #[arg(long, value_name = "FILE")]
+        scene: Option<PathBuf>,
+        /// Where to write
+        #[arg(long, value_name = "DIR", default_value = "out/stability")]
+        out: PathBuf,
+        /// Threads; each run has one of its own
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+    },
+}
+
+#[derive(Args)]
+struct TradeArguments {
+    /// The scene file; the built-in bar without it
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// Where to write
+    #[arg(long, value_name = "DIR", default_value = "out/trade")]
+    out: PathBuf,
+    /// The large grid, which takes hours
+    #[arg(long)]
+    full: bool,
+    /// Threads; each run has one of its own
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: u16,
+    /// Print the command of every row and do nothing
+    #[arg(long, conflicts_with_all = ["row", "merge"])]
+    list: bool,
+    /// Run one row of --list and print its part of the log
+    #[arg(long, value_name = "CONFIGURATION", conflicts_with = "merge")]
+    row: Option<String>,
+    /// Gather logs that --row has printed
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    merge: Vec<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum QuantityName {
+    Velocity,
+    Stress,
+    Displacement,
 }
 
 #[derive(Args)]
@@ -126,6 +223,17 @@ fn fraction(text: &str) -> Result<f64, String> {
     }
 }
 
+fn percent(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    match number.parse::<f64>() {
+        Ok(x) if x > 0.0 && x * unit < 10.0 => Ok(x * unit),
+        _ => Err("a number above 0 is allowed, as 1% or 0.01".to_string()),
+    }
+}
+
 fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         None => built_in(),
@@ -134,6 +242,12 @@ fn main() -> ExitCode {
         }
         Some(Command::Exact { scene, points }) => exact(&scene, &points),
         Some(Command::Shape(arguments)) => shape(&arguments),
+        Some(Command::Trade(arguments)) => studies::trade(&arguments),
+        Some(Command::Recommend { scene, error, quantity, out, jobs }) => {
+            studies::recommend(&scene, error, quantity, out, jobs)
+        }
+        Some(Command::Gamma { out, jobs }) => studies::gamma(&out, jobs),
+        Some(Command::Stability { scene, out, jobs }) => studies::stability(scene, &out, jobs),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -89,6 +89,11 @@ impl Scene {
         (0..self.dimension()).map(along).product()
     }
 
+    /// c Δt / h of a time step (s).
+    pub fn courant_number_of(&self, dt: f64) -> f64 {
+        wave_speed(&self.body) * dt / self.spacing()
+    }
+
     /// c Δt / h of the run, at or below `time.cfl`.
     pub fn courant_number(&self) -> f64 {
         wave_speed(&self.body) * self.time.end / (self.step_count() * self.spacing())

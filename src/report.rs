@@ -6,10 +6,15 @@ use crate::figure;
 use crate::history::{csv, prepare, shortest, write_all};
 use crate::run::{Stopped, run};
 use crate::scene::{Mass, Scene};
+use crate::study::stability;
 use crate::summary::{self, Line};
 use crate::vtk;
 use std::path::Path;
 use std::time::Instant;
+
+/// A Δt above this multiple of the predicted limit blows up for certain: the margin
+/// is the prediction's own, and that of particles on their first way.
+const CERTAIN: f64 = 1.002;
 
 /// The history of a run that broke down.
 const FAILED: &str = "history.failed.csv";
@@ -30,12 +35,24 @@ const FILES: [&str; 4] = ["history.csv", "particles.csv", "summary.csv", "cost.c
 /// for, the series for ParaView; one that breaks down leaves only
 /// `history.failed.csv`. Either way the other kind of an earlier run goes.
 ///
-/// Errors: [`Fault::Write`]; [`Fault::Run`] when the run breaks down.
+/// Errors: [`Fault::Unstable`] for a Δt above the predicted limit, before anything
+/// is written; [`Fault::Write`]; [`Fault::Run`] when the run breaks down.
 pub fn run_into(
     dir: &Path,
     scene: &Scene,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Vec<Line>, Fault> {
+    let limit = stability::predicted(scene, 0.0);
+    let dt = scene.time.end / scene.sizes().2;
+    match limit {
+        Ok(limit) if dt > limit * CERTAIN && !scene.time.allow_unstable => {
+            return Err(Fault::Unstable {
+                courant: scene.courant_number(),
+                largest: scene.courant_number_of(limit),
+            });
+        }
+        _ => {} // what cannot be predicted breaks down by its own name
+    }
     prepare(dir)?;
     free_names(dir, scene)?;
     let start = Instant::now();
@@ -44,6 +61,11 @@ pub fn run_into(
         Err(stopped) => return Err(broken(dir, scene, *stopped)?),
     };
     let mut lines = summary::lines(scene, &outcome, start.elapsed().as_secs_f64());
+    if let Ok(limit) = limit.map(|limit| limit.min(f64::MAX)) {
+        let line = |quantity: &str, value, unit| Line { quantity: quantity.into(), value, unit };
+        lines.push(line("critical_time_step", limit, "s"));
+        lines.push(line("fraction_of_critical", outcome.dt / limit, "1"));
+    }
     let cost = summary::cost_lines(&outcome.cost);
     let mut files = vec![
         (FILES[0].to_string(), outcome.history.csv()?),

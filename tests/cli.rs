@@ -411,7 +411,10 @@ fn run_replaces_an_earlier_run() {
         "tip.svg",
     ];
     assert_eq!(files(&dir.join("o")), expected);
-    assert_eq!(run(&["--set", "time.cfl=2", "--set", "probe=[]"]).status.code(), Some(1));
+    assert_eq!(run(&["--set", "time.cfl=2", "--set", "probe=[]"]).status.code(), Some(2));
+    assert_eq!(files(&dir.join("o")), expected, "refused before anything was written");
+    let grow = ["--set", "time.cfl=2", "--set", "probe=[]", "--set", "time.allow_unstable=true"];
+    assert_eq!(run(&grow).status.code(), Some(1));
     assert_eq!(files(&dir.join("o")), ["history.failed.csv"]);
 }
 
@@ -594,6 +597,91 @@ fn discs_write_pictures_and_frames() {
     assert!(!names.iter().any(|name| name.starts_with("particles_")), "{names:?}");
 }
 
+/// A time step above the predicted limit is refused before anything is written, and
+/// the summary of a run says how far it is from that limit.
+#[test]
+fn unstable_step_is_refused() {
+    let dir = directory("unstable");
+    let output = program(&dir, &["run", DYKA, "--out", "o", "--set", "time.cfl=1.75"]);
+    let words = ["c Δt / h is 1.7", "1.7321", "fraction_of_critical", "allow_unstable"];
+    assert_fails(&output, 2, &words);
+    assert!(files(&dir).is_empty());
+    let output = program(&dir, &["run", DYKA, "--out", "o", "--set", "time.cfl=1.73"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let summary = fs::read_to_string(dir.join("o/summary.csv")).unwrap();
+    let line = summary.lines().find(|line| line.starts_with("fraction_of_critical,")).unwrap();
+    let fraction: f64 = line.split(',').nth(1).unwrap().parse().unwrap();
+    assert!((0.98..1.0).contains(&fraction), "{line}");
+}
+
+/// The studies as commands: list, row, merge, recommend; and what they refuse.
+#[test]
+fn studies_as_commands() {
+    let dir = directory("studies");
+    let vibration = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/vibration.toml");
+    let output = program(&dir, &["trade", "--list", "--scene", vibration]);
+    let list = text(&output.stdout);
+    let first = list.lines().next().unwrap();
+    assert!(
+        first.starts_with("lme-mpm trade --scene '") && first.contains(" --row otm/"),
+        "{first}"
+    );
+    assert!(list.lines().count() > 100);
+    let mut parts = Vec::new();
+    for (n, row) in
+        ["mpm/lumped/linear/newmark/0.25/2/0.5", "mpm/lumped/bspline/newmark/0.25/2/0.5"]
+            .into_iter()
+            .enumerate()
+    {
+        let output = program(&dir, &["trade", "--scene", vibration, "--row", row]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let name = format!("{n}.csv");
+        fs::write(dir.join(&name), &output.stdout).unwrap();
+        parts.push(name);
+    }
+    let merge = ["trade", "--scene", vibration, "--out", "o", "--merge", &parts[0], &parts[1]];
+    let output = program(&dir, &merge);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("The cheapest of 2 configurations"));
+    let expected = ["cheapest.csv", "displacement.svg", "stress.svg", "trade.csv", "velocity.svg"];
+    assert_eq!(files(&dir.join("o")), expected);
+    // Refused by name.
+    let output = program(&dir, &["trade", "--row", "mpm/lumped"]);
+    assert_fails(&output, 2, &["--row", "has 2 parts", "method/mass/basis"]);
+    let output = program(&dir, &["trade", "--merge", &parts[0], "--out", "p"]);
+    assert_fails(&output, 2, &["log", "another scene"]);
+    let output = program(&dir, &["recommend", vibration, "--error", "0"]);
+    assert_fails(&output, 2, &["--error", "above 0"]);
+    let discs = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/colliding-discs.toml");
+    let output = program(&dir, &["recommend", discs, "--error", "1%"]);
+    assert_fails(&output, 2, &["no exact solution", "more than one dimension"]);
+}
+
+/// `recommend` writes a scene that runs and keeps its promise.
+#[test]
+fn recommended_scene_reaches_the_error() {
+    let dir = directory("recommend");
+    let small = fs::read_to_string(DYKA).unwrap().replace("cells = 40", "cells = 8");
+    fs::write(dir.join("small.toml"), small).unwrap();
+    let ask = |error: &str| {
+        let out = ["--out", "o", "--jobs", "2", "--quantity", "displacement"];
+        program(&dir, &[&["recommend", "small.toml", "--error", error][..], &out].concat())
+    };
+    let output = ask("4%");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let printed = text(&output.stdout);
+    assert!(printed.contains("For a displacement error of at most 4%"), "{printed}");
+    assert!(printed.contains("\n> ") && printed.contains("ready to run"), "{printed}");
+    let output = program(&dir, &["run", "o/recommended.toml", "--out", "r"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let summary = fs::read_to_string(dir.join("r/summary.csv")).unwrap();
+    let name = "displacement_field_rms_relative,";
+    let line = summary.lines().find(|line| line.starts_with(name)).unwrap();
+    assert!(line.split(',').nth(1).unwrap().parse::<f64>().unwrap() <= 0.04, "{line}");
+    let output = ask("0.00001%");
+    assert_fails(&output, 2, &["no configuration measured", "displacement", "the best has"]);
+}
+
 /// `shape` refuses what a basis cannot serve, with the line of the file.
 #[test]
 fn bad_shape_input() {
@@ -650,7 +738,8 @@ fn bad_scene_without_exact_solution() {
 fn breakdown_blows_up() {
     let dir = directory("blow-up");
     assert!(program(&dir, &["run", DYKA, "--out", "o", "--quiet"]).status.success());
-    let output = program(&dir, &["run", DYKA, "--out", "o", "--set", "time.cfl=1.9"]);
+    let sets = ["--set", "time.cfl=1.9", "--set", "time.allow_unstable=true"];
+    let output = program(&dir, &[&["run", DYKA, "--out", "o"][..], &sets].concat());
     let words = ["blew up at step ", "t = ", "particle ", "Courant number", "smaller time.cfl"];
     assert_fails(&output, 1, &words);
     assert_eq!(files(&dir.join("o")), ["history.failed.csv"]);
@@ -666,7 +755,8 @@ fn breakdown_blows_up() {
 #[test]
 fn breakdown_between_records() {
     let dir = directory("blow-up-between");
-    let sets = ["--set", "time.cfl=1.9", "--set", "output.every=1000000"];
+    let sets = "--set time.cfl=1.9 --set output.every=1000000 --set time.allow_unstable=true";
+    let sets: Vec<&str> = sets.split(' ').collect();
     let output = program(&dir, &[&["run", DYKA, "--out", "o"][..], &sets].concat());
     assert_fails(&output, 1, &["particle ", "at step ", "t = ", "Courant number"]);
 }

@@ -70,7 +70,9 @@ pub struct FileTime {
     pub reading: Option<Spanned<String>>,
     pub stress_update: Option<Spanned<String>>,
     pub rho_b: Option<Spanned<f64>>,
-    pub cfl: Spanned<f64>,
+    pub cfl: Option<Spanned<f64>>,
+    pub fraction_of_critical: Option<Spanned<f64>>,
+    pub allow_unstable: Option<Spanned<bool>>,
     pub end: Spanned<f64>,
 }
 

@@ -69,7 +69,12 @@ pub const KEYS: &[Key] = &[
     may("time.reading", "of newmark, step 8: \"second-order\" (without it) or \"as-printed\""),
     may("time.stress_update", "of forward-euler: \"first\", \"last\" or \"modified-last\""),
     may("time.rho_b", "of generalized-alpha: a number from 0 to 1"),
-    must("time.cfl", "a number above 0: the largest c Δt / h"),
+    may("time.cfl", "a number above 0: the largest c Δt / h; this key, or the next, or both"),
+    may(
+        "time.fraction_of_critical",
+        "a number above 0: the largest Δt, as a part of the limit that is predicted at the start",
+    ),
+    may("time.allow_unstable", "true runs what the predicted limit says must blow up"),
     must("time.end", "a time above 0, in s"),
     may("boundary", "a table of sides: left, right (x); bottom, top (y); back, front (z)"),
     may("boundary.left", SIDE),

@@ -111,8 +111,11 @@ pub struct GridSpec {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Time {
     pub integrator: Integrator,
-    /// The largest Courant number c Δt / h.
+    /// The largest Courant number c Δt / h; that of `fraction_of_critical`, where
+    /// it is smaller.
     pub cfl: f64,
+    /// Run even if the predicted limit of Δt says that it must blow up.
+    pub allow_unstable: bool,
     /// The end of the run (s).
     pub end: f64,
 }

@@ -11,6 +11,7 @@ use crate::exact::riemann::End;
 use crate::fault::SceneError;
 use crate::lattice::points;
 use crate::scene::source::Source;
+use crate::study::stability;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -92,7 +93,7 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
         let problem = format!("it holds the control character {bad:?}");
         return Err(source.error("title", file.title.span(), problem));
     }
-    let scene = Scene {
+    let mut scene = Scene {
         name: name.to_string(),
         title: file.title.into_inner(),
         method,
@@ -110,6 +111,20 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
         vtk,
     };
     affordable(&check, &scene, &file.grid, &file.time)?;
+    if let Some(fraction) = &file.time.fraction_of_critical {
+        let key = "time.fraction_of_critical";
+        let limit = stability::predicted(&scene, 0.0)
+            .map_err(|breakdown| check.source.error(key, fraction.span(), breakdown.to_string()))?;
+        let courant = scene.courant_number_of(limit * fraction.get_ref());
+        if file.time.cfl.is_none() || courant < scene.time.cfl {
+            if !courant.is_finite() {
+                let problem = "nothing strains this body: there is no limit";
+                return Err(check.source.error(key, fraction.span(), problem));
+            }
+            scene.time.cfl = courant;
+        }
+        affordable(&check, &scene, &file.grid, &file.time)?;
+    }
     Ok(scene)
 }
 

@@ -11,9 +11,24 @@ use toml::Spanned;
 
 /// The `time` table.
 pub fn time(check: &Check, file: &FileTime) -> Result<Time, Box<SceneError>> {
+    let positive = |key: &str, value: &Option<Spanned<f64>>| match value {
+        Some(value) => check.number(key, value, |x| x > 0.0).map(Some),
+        None => Ok(None),
+    };
+    let fraction = positive("time.fraction_of_critical", &file.fraction_of_critical)?;
+    let cfl = match (positive("time.cfl", &file.cfl)?, fraction) {
+        (Some(cfl), _) => cfl,
+        (None, Some(fraction)) => fraction, // until the limit is known
+        (None, None) => {
+            let problem = "the time step is not bounded: `time.cfl` is missing, and so is \
+                           `time.fraction_of_critical`";
+            return Err(check.source.error("time.cfl", file.end.span(), problem));
+        }
+    };
     Ok(Time {
         integrator: integrator(check, file)?,
-        cfl: check.number("time.cfl", &file.cfl, |x| x > 0.0)?,
+        cfl,
+        allow_unstable: file.allow_unstable.as_ref().is_some_and(|value| *value.get_ref()),
         end: check.number("time.end", &file.end, |x| x > 0.0)?,
     })
 }
