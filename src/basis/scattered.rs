@@ -126,7 +126,8 @@ pub fn tabulate<const D: usize>(
     shape.clear();
     match basis {
         Basis::Lme { gamma, cutoff } => {
-            let reach = support::radius(*gamma, *cutoff);
+            // At least the nodes of a cell, however narrow the functions.
+            let reach = support::radius(*gamma, *cutoff).max(1.0);
             scratch.bins.sort(nodes, h, if reach.is_finite() { reach } else { 1.0 });
             scratch.lambda.resize(x.len(), SVector::zeros());
             for p in 0..x.len() {

@@ -320,7 +320,8 @@ pub fn map_acceleration<const D: usize>(
     }
 }
 
-/// Stops a run in the step in which a particle stops being finite.
+/// Stops a run in the step in which a particle stops being finite; a density must
+/// also stay above 0.
 ///
 /// Errors: [`Breakdown::NotFinite`] with the first such particle.
 pub fn finite<const D: usize>(particle: &Particles<D>, moment: Moment) -> Result<(), Breakdown> {
@@ -331,6 +332,8 @@ pub fn finite<const D: usize>(particle: &Particles<D>, moment: Moment) -> Result
             "velocity"
         } else if !particle.sigma[p].iter().all(|s| s.is_finite()) {
             "stress"
+        } else if !(particle.rho[p].is_finite() && particle.rho[p] > 0.0) {
+            "density"
         } else {
             continue;
         };
