@@ -18,6 +18,7 @@
 //! | §4, (20)-(26) | [`time::euler`], [`time::generalized_alpha`] | `tests/integrators.rs`, `tests/matrix.rs` |
 //! | §4, (27)-(29) and the Algorithm | [`time::newmark`], [`time::steps`] | `tests/steps.rs`, `tests/convergence.rs`, `tests/regression.rs` |
 //! | §6.2 | [`otm`], [`basis::scattered`] | `tests/otm.rs` |
+//! | §6, studies | [`study`] | `tests/studies.rs`, `tests/stability.rs`, `tests/extremes.rs` |
 //! | §6, (39) | [`measure`] | `tests/analytical.rs` |
 //! | other exact solutions | [`exact::forced`], [`exact::mode`], [`exact::manufactured`] | `tests/loads.rs` |
 //! | App. A, (40)-(59) | [`exact::riemann`] | `tests/analytical.rs` |

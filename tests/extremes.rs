@@ -374,10 +374,9 @@ fn extremes_nan_is_caught() {
                     other => panic!("{name}, {what}: {other}"),
                 };
                 assert_eq!(stopped.moment().step, 6);
-                assert!(
-                    particle.abs_diff(if nodes { 2 * hurt } else { hurt }) <= 6 || particle == hurt,
-                    "{name}, {what}: {particle}"
-                );
+                // Nodes and points of OTM are numbered apart, two points to a node.
+                let beside = if nodes && what == "v" { 2 * hurt } else { hurt };
+                assert!(particle.abs_diff(beside) <= 6, "{name}, {what}: {particle}");
             }
         }
     }
@@ -453,11 +452,11 @@ fn extremes_of_frugality() {
     let short = ["time.end=1e-6"];
     for (name, text, sets) in [
         ("dyka", frozen, &[][..]),
-        ("dyka, uGIMP", frozen, &["basis.kind=ugimp"]),
-        ("dyka, B-splines", frozen, &["basis.kind=bspline"]),
-        ("dyka, local max-ent", frozen, &["basis.kind=lme", "basis.gamma=0.8"]),
-        ("dyka, generalized-α", frozen, &["time.integrator=generalized-alpha", "time.rho_b=0.8"]),
-        ("dyka, consistent mass", frozen, &["mass=consistent"]),
+        ("dyka (uGIMP)", frozen, &["basis.kind=ugimp"]),
+        ("dyka (B-splines)", frozen, &["basis.kind=bspline"]),
+        ("dyka (local max-ent)", frozen, &["basis.kind=lme", "basis.gamma=0.8"]),
+        ("dyka (generalized-α)", frozen, &["time.integrator=generalized-alpha", "time.rho_b=0.8"]),
+        ("dyka (consistent mass)", frozen, &["mass=consistent"]),
         ("dyka-otm", otm, &[]),
         ("gravity", GRAVITY, &[]),
         ("traction", TRACTION, &[]),

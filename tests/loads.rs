@@ -311,13 +311,11 @@ fn loads_do_the_work_that_the_energy_gains() {
     for load in
         ["body_force={ acceleration = 3, ramp = 1e-3 }", "traction={ right = 3e3, ramp = 1e-3 }"]
     {
-        let text = format!(
-            "title = 'one'\nmethod = 'mpm'\nmass = 'lumped'\nbasis.kind = 'linear'\n\
-             body = {{ length = 1, density = 1000, youngs_modulus = 1e9, poisson_ratio = 0 }}\n\
-             grid = {{ cells = 1, particles_per_cell = 1 }}\n\
-             time = {{ integrator = 'newmark', cfl = 0.05, end = 1e-3 }}\n"
-        );
-        let history = finished(&scene(&text, &[load])).history;
+        let text = "title = 'one'\nmethod = 'mpm'\nmass = 'lumped'\nbasis.kind = 'linear'\n\
+             body = { length = 1, density = 1000, youngs_modulus = 1e9, poisson_ratio = 0 }\n\
+             grid = { cells = 1, particles_per_cell = 1 }\n\
+             time = { integrator = 'newmark', cfl = 0.05, end = 1e-3 }\n";
+        let history = finished(&scene(text, &[load])).history;
         let last = |name: &str| *history.column(name).unwrap().last().unwrap();
         assert_eq!(history.column("t").unwrap().len(), 21);
         assert_relative_eq!(last("work"), last("kinetic_energy"), max_relative = 5e-3);
