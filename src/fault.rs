@@ -146,6 +146,8 @@ pub enum Fault {
     NothingReaches { quantity: &'static str, error: f64, best: f64 },
     #[error("no exact solution is known for this scene: {why}")]
     NoExact { why: &'static str },
+    #[error("{0}")]
+    Differs(String),
     #[error("{breakdown}\n{advice}")]
     Run {
         breakdown: Breakdown,
@@ -158,7 +160,7 @@ impl Fault {
     /// 1 for a run that broke down, 2 for input or output that cannot be used.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Fault::Run { .. } => 1,
+            Fault::Run { .. } | Fault::Differs(_) => 1,
             _ => 2,
         }
     }

@@ -19,6 +19,7 @@
 //! | §4, (27)-(29) and the Algorithm | [`time::newmark`], [`time::steps`] | `tests/steps.rs`, `tests/convergence.rs`, `tests/regression.rs` |
 //! | §6.2 | [`otm`], [`basis::scattered`] | `tests/otm.rs` |
 //! | §6, studies | [`study`] | `tests/studies.rs`, `tests/stability.rs`, `tests/extremes.rs` |
+//! | porting | [`trace`], [`check`] | `tests/trace.rs` |
 //! | §6, (39) | [`measure`] | `tests/analytical.rs` |
 //! | other exact solutions | [`exact::forced`], [`exact::mode`], [`exact::manufactured`] | `tests/loads.rs` |
 //! | App. A, (40)-(59) | [`exact::riemann`] | `tests/analytical.rs` |
@@ -30,6 +31,7 @@
 //! [`cost`] (what it took) and [`fault`] (what can go wrong).
 
 pub mod basis;
+pub mod check;
 pub mod continuum;
 pub mod cost;
 pub mod exact;
@@ -49,4 +51,5 @@ pub mod scene;
 pub mod study;
 pub mod summary;
 pub mod time;
+pub mod trace;
 pub mod vtk;

@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lme_mpm::basis::Basis;
+use lme_mpm::check::{self, Tolerance};
 use lme_mpm::fault::Fault;
 use lme_mpm::points::{self, Points};
 use lme_mpm::report;
@@ -80,6 +81,47 @@ enum Command {
         after_help = "Example:\n  lme-mpm shape --basis lme --spacing 0.1 --gamma 0.8 --nodes nodes.csv --points points.csv"
     )]
     Shape(ShapeArguments),
+    /// Write down every intermediate of the first steps of a scene
+    ///
+    /// CSV k,step,symbol,index,node,component,value in the paper's order, to hold a
+    /// port against; see `lme-mpm check`.
+    #[command(
+        after_help = "Example:\n  lme-mpm trace data/scenes/dyka.toml --steps 2 --set grid.cells=4 --out trace.csv"
+    )]
+    Trace {
+        /// The scene file (TOML, SI units)
+        scene: PathBuf,
+        /// How many time steps
+        #[arg(long, value_name = "K", default_value_t = 1)]
+        steps: usize,
+        /// Replace or add a value of the scene; may be given again
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+        /// Numbers in hexadecimal, as C prints them with %a
+        #[arg(long)]
+        hex: bool,
+        /// Where to write; standard output without it
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
+    /// Hold a port's trace against a reference
+    ///
+    /// Reads two CSV files with the columns of a trace. The port's may be any part
+    /// of the reference. Reports the first number that differs, in the paper's
+    /// order, with its equation and the likely cause; the exit code is then 1.
+    #[command(after_help = "Example:\n  lme-mpm check trace.csv port.csv")]
+    Check {
+        /// What `lme-mpm trace` wrote
+        reference: PathBuf,
+        /// What the port wrote; - reads standard input
+        theirs: PathBuf,
+        /// Allowed difference, relative to the number
+        #[arg(long, default_value_t = 1e-9)]
+        rtol: f64,
+        /// Allowed difference, relative to the largest value of the symbol in its step
+        #[arg(long, default_value_t = 1e-12)]
+        atol: f64,
+    },
     /// Measure the trade of speed for accuracy on a scene
     ///
     /// Runs many configurations three times each and writes trade.csv (errors,
@@ -242,6 +284,12 @@ fn main() -> ExitCode {
         }
         Some(Command::Exact { scene, points }) => exact(&scene, &points),
         Some(Command::Shape(arguments)) => shape(&arguments),
+        Some(Command::Trace { scene, steps, set, hex, out }) => {
+            trace(&scene, steps, &set, hex, out.as_deref())
+        }
+        Some(Command::Check { reference, theirs, rtol, atol }) => {
+            compare(&reference, &theirs, Tolerance { relative: rtol, absolute: atol })
+        }
         Some(Command::Trade(arguments)) => studies::trade(&arguments),
         Some(Command::Recommend { scene, error, quantity, out, jobs }) => {
             studies::recommend(&scene, error, quantity, out, jobs)
@@ -345,6 +393,33 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
         |path: &Path| Points::read(&path.display().to_string(), open(path)?, &points::COORDINATES);
     let (nodes, points) = (read(&arguments.nodes)?, read(&arguments.points)?);
     print_bytes(&points::shape_at(&basis, spacing, &nodes, &points)?)
+}
+
+fn trace(
+    path: &Path,
+    steps: usize,
+    sets: &[String],
+    hex: bool,
+    out: Option<&Path>,
+) -> Result<(), Fault> {
+    let scene = Scene::open(path, sets)?;
+    let entries = lme_mpm::trace::trace(&scene, steps)
+        .map_err(|breakdown| Fault::Run { breakdown, advice: "nothing was written".to_string() })?;
+    let text = lme_mpm::trace::csv(&entries, hex)?;
+    let Some(path) = out else { return print_bytes(&text) };
+    let folder = path.parent().filter(|p| *p != Path::new("")).unwrap_or(Path::new("."));
+    let name = path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+    lme_mpm::history::prepare(folder)?;
+    lme_mpm::history::write_all(folder, &[(name, text)], &[])
+}
+
+fn compare(reference: &Path, theirs: &Path, tolerance: Tolerance) -> Result<(), Fault> {
+    let read = |path: &Path| check::read(&path.display().to_string(), open(path)?);
+    let report = check::compare(&read(reference)?, &read(theirs)?, tolerance)?;
+    match report.divergence {
+        None => print_bytes(report.text().as_bytes()),
+        Some(_) => Err(Fault::Differs(report.text())),
+    }
 }
 
 /// A file, or standard input for `-`.

@@ -131,7 +131,11 @@ pub fn deform<const D: usize>(
 }
 
 /// v_p = Σ_a v_a N_ap, for what is recorded; nothing is computed from it.
-fn show_velocity<const D: usize>(particle: &mut Particles<D>, node: &Nodes<D>, shape: &Shape<D>) {
+pub fn show_velocity<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+) {
     for p in 0..particle.len() {
         particle.v[p] = SVector::zeros();
         for (a, N_ap, _) in shape.of(p) {
@@ -142,7 +146,7 @@ fn show_velocity<const D: usize>(particle: &mut Particles<D>, node: &Nodes<D>, s
 // ANCHOR_END: otm_steps
 
 /// Step 5: N_ap and ∇N_ap on the nodes where they stand now.
-fn tabulate<const D: usize>(
+pub fn tabulate<const D: usize>(
     State { particle, node, shape, scratch, .. }: &mut State<D>,
     model: &Model<D>,
     moment: Moment,

@@ -78,7 +78,7 @@ pub fn step<const D: usize>(
 }
 
 /// m_I ((1 − α_m) a_I^{k+1} + α_m a_I^k) = f_I^k.
-fn balance_accelerations<const D: usize>(node: &mut Nodes<D>, parameters: &Parameters) {
+pub fn balance_accelerations<const D: usize>(node: &mut Nodes<D>, parameters: &Parameters) {
     let alpha_m = parameters.alpha_m;
     for I in 0..node.len() {
         if node.m[I] > 0.0 {
@@ -91,7 +91,7 @@ fn balance_accelerations<const D: usize>(node: &mut Nodes<D>, parameters: &Param
 /// (24) v_p += Δt Σ N_Ip ((1 − γ) a_I^k + γ a_I^{k+1}); (25)
 /// x_p += Σ N_Ip (Δt v_I + Δt² ((½ − β) a_I^k + β a_I^{k+1})); (26)
 /// a_p = Σ N_Ip a_I^{k+1}.
-fn move_particles<const D: usize>(
+pub fn move_particles<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
     shape: &Shape<D>,
@@ -113,7 +113,7 @@ fn move_particles<const D: usize>(
 }
 
 /// The nodal displacement inside (25), divided by Δt, in place of v_I.
-fn average_velocity<const D: usize>(node: &mut Nodes<D>, parameters: &Parameters, dt: f64) {
+pub fn average_velocity<const D: usize>(node: &mut Nodes<D>, parameters: &Parameters, dt: f64) {
     let beta = parameters.beta;
     for I in 0..node.len() {
         node.v[I] += (node.a[I] * (0.5 - beta) + node.a_next[I] * beta) * dt;
