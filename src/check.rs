@@ -260,8 +260,7 @@ fn cause(
         "lambda" => say("λ: γ = βh² (not β/h²), solved on the set that the cut-off leaves"),
         "m_I" => say("the mass of a particle is ρ times its share of the cell"),
         "f_int_I" => say("σ and ρ of this step, and the volume m/ρ"),
-        "v_I" if near(theirs, 0.0) => say("v_I is not computed, or a mass is missing"),
-        "v_I" => say("lumped or consistent mass matrix?"),
+        "v_I" => say("v_I = p_I/m_I; or is one of the two with the consistent mass matrix?"),
         "rho_p" => {
             say("the density is updated with the strain increment of this step: ρ/(1 + tr Δε)")
         }
