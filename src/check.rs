@@ -98,6 +98,14 @@ pub fn read(name: &str, input: impl Read) -> Result<Vec<Entry>, Fault> {
     Ok(entries)
 }
 
+/// The entries of `theirs` that `reference` has, too: for a reference that is a part
+/// of what a port prints.
+pub fn common(reference: &[Entry], theirs: Vec<Entry>) -> Vec<Entry> {
+    let known: std::collections::HashSet<Key> =
+        reference.iter().map(|entry| key(entry, entry.symbol)).collect();
+    theirs.into_iter().filter(|entry| known.contains(&key(entry, entry.symbol))).collect()
+}
+
 /// Numbers between a and b, counted as steps of the last bit.
 pub fn ulps(a: f64, b: f64) -> u64 {
     // Ordered like the numbers: negative ones mirrored.

@@ -121,6 +121,9 @@ enum Command {
         /// Allowed difference, relative to the largest value of the symbol in its step
         #[arg(long, default_value_t = 1e-12)]
         atol: f64,
+        /// Leave out what the reference does not have, instead of refusing it
+        #[arg(long)]
+        part: bool,
     },
     /// Measure the trade of speed for accuracy on a scene
     ///
@@ -287,8 +290,8 @@ fn main() -> ExitCode {
         Some(Command::Trace { scene, steps, set, hex, out }) => {
             trace(&scene, steps, &set, hex, out.as_deref())
         }
-        Some(Command::Check { reference, theirs, rtol, atol }) => {
-            compare(&reference, &theirs, Tolerance { relative: rtol, absolute: atol })
+        Some(Command::Check { reference, theirs, rtol, atol, part }) => {
+            compare(&reference, &theirs, Tolerance { relative: rtol, absolute: atol }, part)
         }
         Some(Command::Trade(arguments)) => studies::trade(&arguments),
         Some(Command::Recommend { scene, error, quantity, out, jobs }) => {
@@ -413,9 +416,13 @@ fn trace(
     lme_mpm::history::write_all(folder, &[(name, text)], &[])
 }
 
-fn compare(reference: &Path, theirs: &Path, tolerance: Tolerance) -> Result<(), Fault> {
+fn compare(reference: &Path, theirs: &Path, tolerance: Tolerance, part: bool) -> Result<(), Fault> {
     let read = |path: &Path| check::read(&path.display().to_string(), open(path)?);
-    let report = check::compare(&read(reference)?, &read(theirs)?, tolerance)?;
+    let (reference, mut theirs) = (read(reference)?, read(theirs)?);
+    if part {
+        theirs = check::common(&reference, theirs);
+    }
+    let report = check::compare(&reference, &theirs, tolerance)?;
     match report.divergence {
         None => print_bytes(report.text().as_bytes()),
         Some(_) => Err(Fault::Differs(report.text())),
