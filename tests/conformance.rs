@@ -477,3 +477,57 @@ fn conformance_of_the_port() {
         assert!(report.missing.is_empty(), "{}: {}", piece.name, report.text());
     }
 }
+
+/// What `tests/port/kernels.py` prints for a file of level 0, row by row.
+fn kernels(what: &str, bug: &str) -> Option<Vec<Vec<f64>>> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/port/kernels.py");
+    let table = folder().join(format!("level-0/{what}.csv"));
+    let output = Command::new("python3").arg(file).arg(what).arg(table).arg(bug).output().ok()?;
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let row = |line: &str| line.split(' ').map(|x| x.parse().unwrap()).collect();
+    Some(text.lines().map(row).collect())
+}
+
+/// The largest difference of a port's kernels from level 0, relative to the largest
+/// value of each column.
+fn off_by(what: &str, columns: &[&str], bug: &str) -> Option<f64> {
+    let theirs = kernels(what, bug)?;
+    let text = fs::read_to_string(folder().join(format!("level-0/{what}.csv"))).unwrap();
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), theirs.len());
+    let mut worst = 0.0_f64;
+    for (n, column) in columns.iter().enumerate() {
+        let at = header.iter().position(|name| name == *column).unwrap();
+        let values: Vec<f64> = rows.iter().map(|row| row[at].parse().unwrap()).collect();
+        let hex_at = header.iter().position(|name| name == format!("{column}_hex")).unwrap();
+        let largest = values.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        for (row, value) in rows.iter().zip(&values).map(|(row, value)| (&row[hex_at], value)) {
+            assert_eq!(trace::number(row), Some(*value), "hexadecimal and decimal differ");
+        }
+        for (value, row) in values.iter().zip(&theirs) {
+            worst = worst.max((value - row[n]).abs() / largest);
+        }
+    }
+    Some(worst)
+}
+
+/// The measure and the exact bar of the port pass level 0; without the square, or with
+/// ends that give back half of a wave, they do not.
+#[test]
+fn conformance_of_the_kernels() {
+    let exact = ["velocity", "stress", "displacement"];
+    for (what, columns, bug) in
+        [("measure", &["rms"][..], "missing-square"), ("exact", &exact, "half-reflection")]
+    {
+        let Some(right) = off_by(what, columns, "") else {
+            assert!(std::env::var_os("CI").is_none(), "python3 is needed in CI");
+            return;
+        };
+        assert!(right < 1e-12, "{what}: {right:e}");
+        let wrong = off_by(what, columns, bug).unwrap();
+        assert!(wrong > 0.1, "{bug} was not found: {wrong:e}");
+    }
+}
