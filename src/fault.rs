@@ -38,8 +38,9 @@ pub enum Breakdown {
     )]
     LeftGrid { particle: usize, moment: Moment, position: Vec<f64> },
     #[error(
-        "the volume of particle {particle} is used up at {moment}: tr Δε = {strain:e} in one \
-         step, and 1 + tr Δε must stay above 0"
+        "the volume of particle {particle} is used up at {moment}: in one step it would become \
+         {:e} times what it was, and that must stay above 0",
+        1.0 + strain
     )]
     Inverted { particle: usize, moment: Moment, strain: f64 },
     #[error("the {symbol} of particle {particle} is not a finite number at {moment}")]
@@ -137,9 +138,15 @@ pub enum Fault {
     #[error(
         "the time step is too large: c Δt / h is {courant:.4}, and {largest:.4} is the most that \
          stays bounded; set a smaller time.cfl, or time.fraction_of_critical = 0.9, or \
-         time.allow_unstable = true to see it blow up"
+         time.allow_unstable = true to see it blow up{}",
+        if *singular {
+            " (with one particle per cell the consistent mass matrix is nearly singular: give \
+             the cells more)"
+        } else {
+            ""
+        }
     )]
-    Unstable { courant: f64, largest: f64 },
+    Unstable { courant: f64, largest: f64, singular: bool },
     #[error(
         "no configuration measured reaches a {quantity} error of {error}: the best has {best:.2e}"
     )]

@@ -49,6 +49,8 @@ pub fn run_into(
             return Err(Fault::Unstable {
                 courant: scene.courant_number(),
                 largest: scene.courant_number_of(limit),
+                singular: scene.mass == Mass::Consistent
+                    && scene.grid.particles_per_cell.contains(&1),
             });
         }
         _ => {} // what cannot be predicted breaks down by its own name

@@ -33,6 +33,7 @@ pub fn trade(arguments: &TradeArguments) -> Result<(), Fault> {
     let template = template(arguments.scene.as_deref())?;
     if let Some(row) = &arguments.row {
         let configuration: Configuration = row.parse()?;
+        template.scene(&configuration)?;
         let scene = trade::scene_digest(&template);
         let passes = 1..=trade::PASSES;
         let runs = passes.map(|pass| trade::time(&template, &configuration, pass).cells(&scene));
@@ -49,6 +50,9 @@ pub fn trade(arguments: &TradeArguments) -> Result<(), Fault> {
             .collect();
         return print_bytes(lines.as_bytes());
     }
+    // Without an exact solution there is no error to trade.
+    let scene = template.scene_as_it_is()?;
+    lme_mpm::exact::Exact::of(&scene)?;
     let dir = &arguments.out;
     let rows = match arguments.merge.is_empty() {
         true => measured(&template, dir, arguments.full, arguments.jobs)?,
@@ -175,7 +179,9 @@ pub fn recommend(
         QuantityName::Displacement => (2, QUANTITIES[2]),
     };
     let Some(best) = trade::cheapest(&rows, number, error) else {
-        let errors = rows.iter().filter_map(|row| row.error(number));
+        let own = rows.iter().filter(|row| !trade::is_baseline(&row.configuration));
+        let errors = own.filter_map(|row| row.error(number));
+        write_all(&dir, &[], &["recommended.toml".to_string()])?; // that of an earlier question
         return Err(Fault::NothingReaches {
             quantity: name,
             error,

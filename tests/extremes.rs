@@ -32,7 +32,8 @@ fn outcome(scene: &Scene) -> Result<lme_mpm::run::Outcome, Box<Stopped>> {
 
 /// GOAL: a node of tiny mass sends no particle off.
 /// SETUP: the bar's last particle stands ε h beyond the end node, ε = 1e-2 … 1e-15, so
-/// that the node behind it has the mass ε m_p; every integrator, both masses.
+/// that the node behind it has the mass ε m_p; every integrator. (The consistent
+/// matrix: `mass_of_a_light_node_does_no_harm`.)
 /// EXPECTED: at a step within its own limit for that place every scheme stays bounded.
 /// The leapfrogs keep their usual step for any ε. For stress-last and generalized-α
 /// the limit itself goes to zero like √(2ε), which the prediction says.
@@ -284,14 +285,18 @@ fn extremes_of_the_time_step() {
         assert!((last / exact - 1.0).abs() < 1e-3, "{name}: {last:e} and {exact:e}");
         let wild = ["grid.cells=8", "time.cfl=9", "time.fraction_of_critical=1.5", "time.end=1e-3"];
         let stopped = outcome(&dyka(&[sets, &wild].concat())).unwrap_err();
-        assert!(stopped.breakdown.moment().step > 0, "{name}");
+        let grown = matches!(
+            stopped.breakdown,
+            Breakdown::Diverged { .. } | Breakdown::Inverted { .. } | Breakdown::LeftGrid { .. }
+        );
+        assert!(grown && stopped.breakdown.moment().step > 0, "{name}: {}", stopped.breakdown);
     }
 }
 
 /// GOAL: the energy stays over 100 000 steps, and the run ends as it should.
 /// SETUP: the bar on 8 cells, far more periods than any study; Newmark's method, and
 /// OTM.
-/// EXPECTED: no drift of the mean above a percent, although the bar is thrown hard.
+/// EXPECTED: no drift of the mean above five percent, although the bar is thrown hard.
 #[test]
 fn extremes_of_length() {
     for method in ["method=mpm", "method=otm"] {
@@ -383,7 +388,7 @@ fn extremes_nan_is_caught() {
 }
 
 /// GOAL: a grid that does not fit is refused with the memory it would need.
-/// SETUP: 1e9 cells, in 1D and 3D, and a support that covers everything.
+/// SETUP: 1e9 cells and more in 1D and 2D, and a long series of large frames.
 /// EXPECTED: an error at once, before anything is allocated.
 #[test]
 fn extremes_of_memory() {

@@ -90,8 +90,8 @@ pub fn increment<const D: usize>(G: &SMatrix<f64, D, D>) -> (SMatrix<f64, D, D>,
 /// Δε = sym(G (1 + G/2)⁻¹), the strain increment at the middle of a step of finite
 /// size (–); `None` where 1 + G/2 has no inverse.
 ///
-/// In 1D it is G/(1 + G/2), the logarithm ln(1 + G) but for G³/12. Of a rotation,
-/// however large, it is zero.
+/// In 1D it is G/(1 + G/2), the logarithm ln(1 + G) but for G³/12. Of a rotation by
+/// less than half a turn it is zero.
 pub fn midpoint_strain<const D: usize>(G: &SMatrix<f64, D, D>) -> Option<SMatrix<f64, D, D>> {
     let middle = (SMatrix::<f64, D, D>::identity() + G * 0.5).try_inverse()?;
     Some(symmetric_part(&(G * middle)))

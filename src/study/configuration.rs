@@ -155,6 +155,14 @@ impl Template {
         table.to_string()
     }
 
+    /// The scene of the template itself.
+    ///
+    /// Errors: [`Fault::Scene`].
+    pub fn scene_as_it_is(&self) -> Result<Scene, Fault> {
+        let name = self.path.display().to_string();
+        Ok(Scene::parse("scene", &name, &self.table.to_string(), &[])?)
+    }
+
     /// Number of axes.
     pub fn dimension(&self) -> usize {
         let length = self.table.get("body").and_then(|body| body.get("length"));
@@ -178,13 +186,21 @@ fn basis(text: &str) -> Table {
         return table;
     };
     table.insert("kind".into(), Value::String("lme".into()));
-    let (gamma, cutoff) = match numbers.split_once('-') {
-        Some((gamma, cutoff)) => (gamma, Some(cutoff)),
-        None => (numbers, None),
-    };
-    for (key, text) in [("gamma", Some(gamma)), ("cutoff", cutoff)] {
-        if let Some(number) = text.and_then(|text| text.parse::<f64>().ok()) {
-            table.insert(key.into(), Value::Float(number));
+    // The whole is γ, or it is cut at the first minus sign that leaves two numbers.
+    let number = |text: &str| text.parse::<f64>().ok();
+    let mut cuts = numbers.match_indices('-').map(|(at, _)| (&numbers[..at], &numbers[at + 1..]));
+    let two = cuts.find_map(|(gamma, cutoff)| Some((number(gamma)?, number(cutoff)?)));
+    match (number(numbers), two) {
+        (Some(gamma), _) => {
+            table.insert("gamma".into(), Value::Float(gamma));
+        }
+        (None, Some((gamma, cutoff))) => {
+            table.insert("gamma".into(), Value::Float(gamma));
+            table.insert("cutoff".into(), Value::Float(cutoff));
+        }
+        // Said as it is, so that the scene refuses it by name.
+        (None, None) => {
+            table.insert("gamma".into(), Value::String(numbers.to_string()));
         }
     }
     table

@@ -75,6 +75,9 @@ fn row(template: &Template, (configuration, offset): &(Configuration, f64)) -> R
         let scene = template.scene(configuration).map_err(|fault| fault.to_string())?;
         let name = |breakdown: crate::fault::Breakdown| breakdown.to_string();
         let predicted = stability::predicted(&scene, *offset).map_err(name)?;
+        if !predicted.is_finite() {
+            return Err("nothing strains this body: there is no limit".to_string());
+        }
         let measured = stability::measured(&scene, *offset, predicted, STEPS, TOLERANCE);
         let measured = measured.map_err(name)?;
         Ok((scene.courant_number_of(predicted), scene.courant_number_of(measured)))

@@ -409,6 +409,9 @@ pub fn measured(
     step_count: usize,
     tolerance: f64,
 ) -> Result<f64, Breakdown> {
+    if !guess.is_finite() {
+        return Ok(guess); // nothing grows
+    }
     let (mut low, mut high) = (0.5 * guess, 1.5 * guess);
     while grows(scene, offset, low, step_count)? {
         (low, high) = (0.5 * low, low);

@@ -119,15 +119,21 @@ pub fn grid(template: &Template, full: bool) -> Result<Vec<Configuration>, Fault
                         Some(scene.courant_number_of(limit))
                     });
                     // Two digits, so that a configuration has a short name.
-                    let courant =
-                        limit.map_or(0.5, |limit| libm::floor(-step * limit * 100.0) / 100.0);
-                    configuration.cfl = courant.max(0.01);
+                    match limit.filter(|limit| limit.is_finite()) {
+                        Some(limit) => {
+                            let courant = libm::floor(-step * limit * 100.0) / 100.0;
+                            configuration.cfl = courant.max(0.01);
+                        }
+                        None => return, // no limit, or no such scene: the common step tells
+                    }
                 }
                 if !all.contains(&configuration) {
                     all.push(configuration);
                 }
             };
-        add("otm", "lumped", "linear", "newmark", 1, 0.998);
+        if template.dimension() == 1 {
+            add("otm", "lumped", "linear", "newmark", 1, 0.998);
+        }
         let bases: &[&str] = match full {
             true => &[
                 "linear",
@@ -234,6 +240,9 @@ pub fn read_log(path: &Path, scene: &str) -> Result<Vec<Run>, Fault> {
     let fault = |source| Fault::Read { path: path.to_path_buf(), source };
     let text = fs::read_to_string(path).map_err(fault)?;
     let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+    if whole.is_empty() {
+        return Ok(Vec::new()); // cut short before its first line was whole
+    }
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(whole.as_bytes());
     let columns = log_columns();
     let header = reader.headers().map_err(|error| fault(error.into()))?.clone();
@@ -299,7 +308,8 @@ pub fn runs(
     let text = |run: &Run| csv(&log_columns(), std::iter::once(run.cells(&scene)));
     // Written anew, so that a line cut short does not stay.
     let mut bytes = csv(&log_columns(), known.iter().map(|run| run.cells(&scene)))?;
-    fs::write(path, &bytes).map_err(fault)?;
+    let new = path.with_extension("csv.part");
+    fs::write(&new, &bytes).and_then(|()| fs::rename(&new, path)).map_err(fault)?;
     let mut log = fs::OpenOptions::new().append(true).open(path).map_err(fault)?;
     let mut open = Vec::new();
     for pass in 1..=PASSES {
