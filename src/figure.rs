@@ -167,17 +167,39 @@ pub fn fronts(bar: &Bar, transits: f64) -> String {
 /// Errors against the number of cells, both on logarithmic axes; each list of
 /// `(cells, error)` has its name.
 pub fn convergence(title: &str, lists: &[(&str, Points)]) -> String {
-    let curve = |(n, (name, points)): (usize, &(&str, Points))| Curve {
+    let owned: Vec<(String, Points)> =
+        lists.iter().map(|(name, points)| (name.to_string(), points.clone())).collect();
+    log_curves(title, "cells [–]", "relative error [–]", &owned)
+}
+
+/// Curves with names, both axes logarithmic.
+pub fn log_curves(title: &str, x_label: &str, y_label: &str, lists: &[(String, Points)]) -> String {
+    named_curves(title, x_label, y_label, lists, true)
+}
+
+/// Curves with names on plain axes.
+pub fn curves(title: &str, x_label: &str, y_label: &str, lists: &[(String, Points)]) -> String {
+    named_curves(title, x_label, y_label, lists, false)
+}
+
+fn named_curves(
+    title: &str,
+    x_label: &str,
+    y_label: &str,
+    lists: &[(String, Points)],
+    log: bool,
+) -> String {
+    let curve = |(n, (name, points)): (usize, &(String, Points))| Curve {
         points: points.clone(),
         colour: COLOURS[n % COLOURS.len()],
         width: 2.0,
-        legend: name.to_string(),
+        legend: name.clone(),
     };
     let frame = Frame {
         title: title.to_string(),
-        x_label: "cells [–]".to_string(),
-        y_label: "relative error [–]".to_string(),
-        log: true,
+        x_label: x_label.to_string(),
+        y_label: y_label.to_string(),
+        log,
     };
     draw(lists.iter().enumerate().map(curve).collect(), frame)
 }
@@ -235,40 +257,6 @@ pub fn work_precision(title: &str, x_label: &str, works: &[Work], front: &Points
         .with_tick_size(12)
         .with_legend_position(LegendPosition::OutsideRightTop);
     own_ids(&render_to_svg(plots, layout))
-}
-
-/// Curves with names, both axes logarithmic.
-pub fn log_curves(title: &str, x_label: &str, y_label: &str, lists: &[(String, Points)]) -> String {
-    let curve = |(n, (name, points)): (usize, &(String, Points))| Curve {
-        points: points.clone(),
-        colour: COLOURS[n % COLOURS.len()],
-        width: 2.0,
-        legend: name.clone(),
-    };
-    let frame = Frame {
-        title: title.to_string(),
-        x_label: x_label.to_string(),
-        y_label: y_label.to_string(),
-        log: true,
-    };
-    draw(lists.iter().enumerate().map(curve).collect(), frame)
-}
-
-/// Curves with names on plain axes.
-pub fn curves(title: &str, x_label: &str, y_label: &str, lists: &[(String, Points)]) -> String {
-    let curve = |(n, (name, points)): (usize, &(String, Points))| Curve {
-        points: points.clone(),
-        colour: COLOURS[n % COLOURS.len()],
-        width: 2.0,
-        legend: name.clone(),
-    };
-    let frame = Frame {
-        title: title.to_string(),
-        x_label: x_label.to_string(),
-        y_label: y_label.to_string(),
-        log: false,
-    };
-    draw(lists.iter().enumerate().map(curve).collect(), frame)
 }
 
 /// The paper's Fig. 3: local max-ent in 2D for several γ. Above N of the middle

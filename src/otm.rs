@@ -94,11 +94,7 @@ pub fn move_particles<const D: usize>(
     dt: f64,
 ) {
     for p in 0..particle.len() {
-        let mut v_p = SVector::zeros();
-        for (a, N_ap, _) in shape.of(p) {
-            v_p += node.v[a] * N_ap;
-        }
-        particle.x[p] += v_p * dt;
+        particle.x[p] += sums::interpolate(&node.v, shape, p) * dt;
     }
 }
 
@@ -137,10 +133,7 @@ pub fn show_velocity<const D: usize>(
     shape: &Shape<D>,
 ) {
     for p in 0..particle.len() {
-        particle.v[p] = SVector::zeros();
-        for (a, N_ap, _) in shape.of(p) {
-            particle.v[p] += node.v[a] * N_ap;
-        }
+        particle.v[p] = sums::interpolate(&node.v, shape, p);
     }
 }
 // ANCHOR_END: otm_steps

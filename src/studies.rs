@@ -2,6 +2,7 @@
 
 use crate::{QuantityName, TradeArguments, print_bytes};
 use indicatif::{ProgressBar, ProgressStyle};
+use lme_mpm::exact::Exact;
 use lme_mpm::fault::Fault;
 use lme_mpm::figure;
 use lme_mpm::history::{csv, prepare, shortest, write_all};
@@ -28,6 +29,11 @@ fn template(scene: Option<&Path>) -> Result<Template, Fault> {
     }
 }
 
+/// Without an exact solution there is no error to measure.
+fn comparable(template: &Template) -> Result<(), Fault> {
+    Exact::of(&template.scene_as_it_is()?).map(|_| ())
+}
+
 /// `lme-mpm trade`.
 pub fn trade(arguments: &TradeArguments) -> Result<(), Fault> {
     let template = template(arguments.scene.as_deref())?;
@@ -50,9 +56,7 @@ pub fn trade(arguments: &TradeArguments) -> Result<(), Fault> {
             .collect();
         return print_bytes(lines.as_bytes());
     }
-    // Without an exact solution there is no error to trade.
-    let scene = template.scene_as_it_is()?;
-    lme_mpm::exact::Exact::of(&scene)?;
+    comparable(&template)?;
     let dir = &arguments.out;
     let rows = match arguments.merge.is_empty() {
         true => measured(&template, dir, arguments.full, arguments.jobs)?,
@@ -168,7 +172,7 @@ pub fn recommend(
     jobs: u16,
 ) -> Result<(), Fault> {
     let template = Template::open(scene)?;
-    lme_mpm::exact::Exact::of(&lme_mpm::scene::Scene::open(scene, &[])?)?;
+    comparable(&template)?;
     let name = scene.file_stem().map_or("scene".into(), |name| name.to_string_lossy());
     let dir = out.unwrap_or_else(|| Path::new("out/recommend").join(name.as_ref()));
     let rows = measured(&template, &dir, false, jobs)?;

@@ -189,8 +189,13 @@ pub fn trace_in<const D: usize>(
         match model.integrator {
             _ if model.method == Method::Otm => otm_step(r, s, m, moment, cost)?,
             Integrator::Newmark(reading) => newmark(r, s, m, reading, dt, moment, cost)?,
-            Integrator::ForwardEuler(order) => forward(r, s, m, order, moment, cost)?,
-            Integrator::CorrectedEuler => corrected(r, s, m, moment, cost)?,
+            Integrator::ForwardEuler(order) => {
+                euler(r, s, m, order, move_with_nodes, moment, cost)?;
+            }
+            Integrator::CorrectedEuler => {
+                let order = StressUpdate::ModifiedLast;
+                euler(r, s, m, order, move_with_shares, moment, cost)?;
+            }
             Integrator::GeneralizedAlpha { rho_b } => alpha(r, s, m, rho_b, moment, cost)?,
         }
         finite(&state.particle, moment)?;
@@ -261,11 +266,17 @@ fn begin<const D: usize>(
     Ok(())
 }
 
-fn forward<const D: usize>(
+/// How an Euler form moves its particles.
+type Mover<const D: usize> = fn(&mut Particles<D>, &Nodes<D>, &Shape<D>, f64);
+
+/// Forward Euler and its corrected form, which moves the particles with shares and
+/// has the order of `modified-last`.
+fn euler<const D: usize>(
     r: &mut Recorder,
     state: &mut State<D>,
     model: &Model<D>,
     order: StressUpdate,
+    move_particles: Mover<D>,
     moment: Moment,
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
@@ -285,7 +296,7 @@ fn forward<const D: usize>(
     advance_momentum(node, dt);
     r.vectors("p_I_advanced", &node.p);
     r.step = 6;
-    move_with_nodes(particle, node, shape, dt);
+    move_particles(particle, node, shape, dt);
     r.vectors("v_p", &particle.v);
     r.vectors("x_p", &particle.x);
     r.step = 7;
@@ -298,37 +309,6 @@ fn forward<const D: usize>(
         update_material(particle, node, shape, model, dt, moment)?;
         r.material(particle);
     }
-    Ok(())
-}
-
-fn corrected<const D: usize>(
-    r: &mut Recorder,
-    state: &mut State<D>,
-    model: &Model<D>,
-    moment: Moment,
-    cost: &mut Cost,
-) -> Result<(), Breakdown> {
-    begin(r, state, model, moment, cost)?;
-    let (State { particle, node, shape, mass, .. }, dt) = (state, model.dt);
-    r.step = 3;
-    impose_essential(node, mass, &model.fixed, cost);
-    r.vectors("v_I", &node.v);
-    r.step = 4;
-    balance_forces(node, mass, particle, shape, model, moment.time - dt, cost);
-    r.forces(node, particle, shape, model, moment.time - dt);
-    r.step = 5;
-    advance_momentum(node, dt);
-    r.vectors("p_I_advanced", &node.p);
-    r.step = 6;
-    move_with_shares(particle, node, shape, dt);
-    r.vectors("v_p", &particle.v);
-    r.vectors("x_p", &particle.x);
-    r.step = 7;
-    map_momentum_anew(node, particle, shape);
-    impose_essential(node, mass, &model.fixed, cost);
-    r.vectors("v_I", &node.v);
-    update_material(particle, node, shape, model, dt, moment)?;
-    r.material(particle);
     Ok(())
 }
 

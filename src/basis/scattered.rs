@@ -64,18 +64,18 @@ impl<const D: usize> Bins<D> {
         self.start.resize(self.count.iter().product::<usize>() + 1, 0);
         for a in 0..x.len() {
             let b = self.box_of(&scaled(a));
-            self.start[b + 1] += 1;
+            self.start[b] += 1;
         }
         for b in 1..self.start.len() {
             self.start[b] += self.start[b - 1];
         }
+        // From the last node to the first, each box from its end to its beginning.
         self.node.clear();
         self.node.resize(x.len(), 0);
-        let mut next = self.start.clone();
-        for a in 0..x.len() {
+        for a in (0..x.len()).rev() {
             let b = self.box_of(&scaled(a));
-            self.node[next[b]] = a;
-            next[b] += 1;
+            self.start[b] -= 1;
+            self.node[self.start[b]] = a;
         }
     }
 

@@ -33,6 +33,8 @@ pub struct ConsistentMass<const D: usize> {
     values: Vec<f64>,
     /// The same with the equations of fixed nodes taken out.
     held: Vec<f64>,
+    /// m_II (kg), before light nodes are lumped.
+    diagonal: Vec<f64>,
     /// Which nodes are light.
     light: Vec<bool>,
     systems: Vec<System>,
@@ -67,6 +69,7 @@ impl<const D: usize> ConsistentMass<D> {
             pattern: SparsityPattern::zeros(nodes, nodes),
             values: Vec::new(),
             held: Vec::new(),
+            diagonal: vec![0.0; nodes],
             light: vec![false; nodes],
             systems,
             system_of,
@@ -85,16 +88,9 @@ impl<const D: usize> ConsistentMass<D> {
         m: &[f64],
         cost: &mut Cost,
     ) -> Result<(), Singular> {
-        self.light.fill(false);
+        self.find_light(particle, shape, m);
         if !self.sum(particle, shape) {
             self.couple(shape, m.len());
-            self.sum(particle, shape);
-        }
-        let bound: f64 = (0..D).map(|_| LIGHT).product();
-        for I in 0..m.len() {
-            self.light[I] = self.at(I, I).is_some_and(|k| self.values[k] < bound * m[I]);
-        }
-        if self.light.contains(&true) {
             self.sum(particle, shape);
         }
         for n in 0..self.systems.len() {
@@ -102,6 +98,18 @@ impl<const D: usize> ConsistentMass<D> {
         }
         cost.factorizations += self.systems.len() as u64;
         Ok(())
+    }
+
+    /// Which nodes have m_II = Σ_p N_Ip m_p N_Ip below LIGHT^D m_I.
+    fn find_light(&mut self, particle: &Particles<D>, shape: &Shape<D>, m: &[f64]) {
+        self.diagonal.fill(0.0);
+        for (I, p, N_Ip, _) in shape.pairs() {
+            self.diagonal[I] += N_Ip * particle.m[p] * N_Ip;
+        }
+        let bound: f64 = (0..D).map(|_| LIGHT).product();
+        for I in 0..m.len() {
+            self.light[I] = self.diagonal[I] < bound * m[I];
+        }
     }
 
     /// Σ_p over all pairs of nodes of a particle; false where the pattern lacks

@@ -97,6 +97,21 @@ pub fn velocity_gradient<const D: usize>(
 }
 // ANCHOR_END: velocity_gradient
 
+// ANCHOR: interpolate
+/// Σ_I q_I N_Ip: a nodal field at particle p, in the unit of q.
+pub fn interpolate<const D: usize>(
+    q: &[SVector<f64, D>],
+    shape: &Shape<D>,
+    p: usize,
+) -> SVector<f64, D> {
+    let mut sum = SVector::zeros();
+    for (I, N_Ip, _) in shape.of(p) {
+        sum += q[I] * N_Ip;
+    }
+    sum
+}
+// ANCHOR_END: interpolate
+
 // ANCHOR: to_particle_divided
 /// (20) (21): Σ_I (q_I / m_I) N_Ip, as forward Euler has it. Here a tiny mass
 /// divides a force that need not be tiny; see [`to_particle`].

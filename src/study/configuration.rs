@@ -84,7 +84,6 @@ impl Template {
     ///
     /// Errors: [`Fault::Read`], [`Fault::Scene`].
     pub fn open(path: &Path) -> Result<Self, Fault> {
-        Scene::open(path, &[])?;
         let text = std::fs::read_to_string(path)
             .map_err(|source| Fault::Read { path: path.to_path_buf(), source })?;
         Template::parse(path, &text)

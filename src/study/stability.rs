@@ -163,10 +163,7 @@ impl<const D: usize> Operator<'_, D> {
         let State { node, particle, shape, .. } = &*self.state;
         let mut q = vec![SVector::zeros(); node.len()];
         for p in 0..particle.len() {
-            let mut v_p = SVector::<f64, D>::zeros();
-            for (I, N_Ip, _) in shape.of(p) {
-                v_p += u[I] * N_Ip;
-            }
+            let v_p = sums::interpolate(u, shape, p);
             for (I, N_Ip, _) in shape.of(p) {
                 q[I] += v_p * (particle.m[p] * N_Ip);
             }
@@ -181,7 +178,8 @@ impl<const D: usize> Operator<'_, D> {
         let (mut above, mut now): (Field<D>, Field<D>) = (zero(), zero());
         for k in (0..self.chebyshev.len()).rev() {
             let twice = if k == 0 { 1.0 } else { 2.0 };
-            let filtered = if above == now { zero() } else { self.filter(&now) };
+            let first = k + 1 == self.chebyshev.len(); // there is nothing to filter yet
+            let filtered = if first { zero() } else { self.filter(&now) };
             let next = (0..u.len())
                 .map(|I| {
                     let turned = filtered[I] * 2.0 - now[I];

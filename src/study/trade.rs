@@ -2,7 +2,7 @@
 //! costs and how wrong it is.
 
 use super::configuration::{Configuration, Template};
-use super::{pool, stability};
+use super::{map, pool, stability};
 use crate::fault::Fault;
 use crate::history::{csv, shortest};
 use crate::run::run;
@@ -44,12 +44,31 @@ pub struct Run {
     pub wall_time: f64,
 }
 
+/// Columns of a run's result: why there is none, the errors, the energy drift, the
+/// counters.
+fn result_columns() -> impl Iterator<Item = &'static str> {
+    let drift = std::iter::once("energy_drift");
+    std::iter::once("problem").chain(QUANTITIES).chain(drift).chain(COUNTERS)
+}
+
+/// The cells of [`result_columns`].
+fn result_cells(result: &Result<Vec<f64>, String>) -> Vec<String> {
+    let mut cells = vec![String::new(); result_columns().count()];
+    match result {
+        Ok(list) => {
+            for (cell, x) in cells[1..].iter_mut().zip(list) {
+                *cell = shortest(*x);
+            }
+        }
+        Err(problem) => cells[0] = problem.clone(),
+    }
+    cells
+}
+
 /// Columns of the log; `scene` tells one study from another.
 pub fn log_columns() -> Vec<&'static str> {
-    let mut columns = vec!["scene", "configuration", "pass", "problem"];
-    columns.extend(QUANTITIES);
-    columns.push("energy_drift");
-    columns.extend(COUNTERS);
+    let mut columns = vec!["scene", "configuration", "pass"];
+    columns.extend(result_columns());
     columns.push("wall_time");
     columns
 }
@@ -58,17 +77,7 @@ impl Run {
     /// The run as a line of the log.
     pub fn cells(&self, scene: &str) -> Vec<String> {
         let mut cells = vec![scene.to_string(), self.configuration.clone(), self.pass.to_string()];
-        let values = QUANTITIES.len() + 1 + COUNTERS.len();
-        match &self.result {
-            Ok(list) => {
-                cells.push(String::new());
-                cells.extend(list.iter().map(|x| shortest(*x)));
-            }
-            Err(problem) => {
-                cells.push(problem.clone());
-                cells.extend(vec![String::new(); values]);
-            }
-        }
+        cells.extend(result_cells(&self.result));
         cells.push(shortest(self.wall_time));
         cells
     }
@@ -151,14 +160,7 @@ pub fn grid(template: &Template, full: bool) -> Result<Vec<Configuration>, Fault
             false => &["linear", "ugimp", "bspline", "lme-0.8", "lme-0.8-0.01", "lme-1.8", "lme-4"],
         };
         let integrators: &[&str] = match full {
-            true => &[
-                "newmark",
-                "forward-euler-first",
-                "forward-euler-last",
-                "corrected-euler",
-                "generalized-alpha-0.5",
-                "generalized-alpha-0.8",
-            ],
+            true => &map::INTEGRATORS,
             false => &["newmark", "forward-euler-last", "generalized-alpha-0.8"],
         };
         let per_cells: &[usize] = if full { &[1, 2, 4] } else { &[2] };
@@ -427,24 +429,12 @@ pub fn cheapest(rows: &[Summary], quantity: usize, error: f64) -> Option<&Summar
 pub fn table(rows: &[Summary]) -> Result<Vec<u8>, Fault> {
     let mut columns =
         vec!["method", "mass", "basis", "integrator", "refinement", "particles_per_cell", "cfl"];
-    columns.push("problem");
-    columns.extend(QUANTITIES);
-    columns.push("energy_drift");
-    columns.extend(COUNTERS);
+    columns.extend(result_columns());
     columns.extend(["wall_time_median", "wall_time_least", "wall_time_largest", "passes", "front"]);
     let fronts: Vec<Vec<&Summary>> = (0..QUANTITIES.len()).map(|q| front(rows, q)).collect();
     let line = |row: &Summary| {
         let mut cells: Vec<String> = row.configuration.split('/').map(String::from).collect();
-        match &row.result {
-            Ok(list) => {
-                cells.push(String::new());
-                cells.extend(list.iter().map(|x| shortest(*x)));
-            }
-            Err(problem) => {
-                cells.push(problem.clone());
-                cells.extend(vec![String::new(); QUANTITIES.len() + 1 + COUNTERS.len()]);
-            }
-        }
+        cells.extend(result_cells(&row.result));
         cells.extend(row.wall_time.iter().map(|x| shortest(*x)));
         cells.push(row.passes.to_string());
         let on = QUANTITIES.iter().zip(&fronts).filter(|(_, front)| front.contains(&row));
