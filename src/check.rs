@@ -140,8 +140,9 @@ pub fn compare(
         let key = key(entry, entry.symbol);
         let is_known = known.contains_key(&key);
         let place = |r: &Entry| (r.k, r.step, r.symbol) == (entry.k, entry.step, entry.symbol);
-        let table = reference.iter().position(place).filter(|_| entry.node.is_some());
-        if let Some(at) = table.filter(|_| !is_known) {
+        let table =
+            (!is_known && entry.node.is_some()).then(|| reference.iter().position(place)).flatten();
+        if let Some(at) = table {
             // A node that the particle does not see: its function is 0 there.
             reference.insert(at, Entry { value: 0.0, ..entry.clone() });
         } else if !is_known {
@@ -265,9 +266,16 @@ fn cause(
         return say("the set of nodes (cut-off), γ = βh², or λ not converged on this set");
     }
     match entry.symbol {
+        "rms" => say("(39) as printed has no square: √(1/N Σ (φ − φ̂)²)"),
+        "v" | "sigma" | "u" => say(
+            "the ends: a fixed one turns the invariant's sign, a free one does not, and both give \
+             back the whole wave",
+        ),
         "lambda" => say("λ: γ = βh² (not β/h²), solved on the set that the cut-off leaves"),
         "m_I" => say("the mass of a particle is ρ times its share of the cell"),
-        "f_int_I" => say("σ and ρ of this step, and the volume m/ρ"),
+        "f_int_I" => {
+            say("σ and ρ are of another moment (time.stress_update), or the volume is not m/ρ")
+        }
         "v_I" => say("v_I = p_I/m_I; or is one of the two with the consistent mass matrix?"),
         "rho_p" => {
             say("the density is updated with the strain increment of this step: ρ/(1 + tr Δε)")
@@ -276,7 +284,7 @@ fn cause(
             "the nodal velocity that the strain is taken from: before or after the momentum is \
              advanced, or mapped anew (time.stress_update)",
         ),
-        "sigma_p" => say("the stress is updated with Δε of this step, before the forces"),
+        "sigma_p" => say("Δσ = λ tr(Δε) 1 + 2μ Δε with Δε of this step; in 2D plane strain"),
         "p_I_advanced" if entry.step == 8 => {
             say("step 8 adds γ f Δt; as printed, f Δt (time.reading)")
         }

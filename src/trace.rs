@@ -43,7 +43,7 @@ pub const COLUMNS: [&str; 7] = ["k", "step", "symbol", "index", "node", "compone
 
 /// Symbols in the paper's order, with the equation, what it is, and the place in the
 /// book.
-pub const SYMBOLS: [(&str, &str, &str); 17] = [
+pub const SYMBOLS: [(&str, &str, &str); 28] = [
     ("N_Ip", "(31) or the basis at hand", "basis.html"),
     ("grad_N_Ip", "(35) or the basis at hand", "basis.html"),
     ("lambda", "(37)", "local-max-ent.html"),
@@ -61,16 +61,35 @@ pub const SYMBOLS: [(&str, &str, &str); 17] = [
     ("v_p", "(19) or the scheme's own", "weak-form.html#eq-19"),
     ("x_p", "(19) or the scheme's own", "weak-form.html#eq-19"),
     ("x_I", "OTM, step 2", "otm.html"),
+    // Kernels by themselves, level 0 of the conformance kit.
+    ("E", "what is given", "governing-equations.html#eq-3"),
+    ("nu", "what is given", "governing-equations.html#eq-3"),
+    ("W_p", "½ σ : D⁻¹ : σ", "conservation.html"),
+    ("phi", "what is given", "dyka-bar.html#eq-39"),
+    ("phi_exact", "what is given", "dyka-bar.html#eq-39"),
+    ("rms", "(39)", "dyka-bar.html#eq-39"),
+    ("x", "what is given", "riemann.html"),
+    ("t", "what is given", "riemann.html"),
+    ("v", "(59)", "riemann.html#eq-59"),
+    ("sigma", "(59)", "riemann.html#eq-59"),
+    ("u", "(59) integrated", "riemann.html#eq-59"),
 ];
 
-/// Writes entries of one time step.
-struct Recorder {
-    entries: Vec<Entry>,
+/// Writes entries of one step of one time step.
+#[derive(Default)]
+pub struct Recorder {
+    pub entries: Vec<Entry>,
     k: usize,
     step: usize,
 }
 
 impl Recorder {
+    /// What follows is of step `step` of time step `k`.
+    pub fn at(&mut self, k: usize, step: usize) -> &mut Self {
+        (self.k, self.step) = (k, step);
+        self
+    }
+
     fn number(&mut self, symbol: &'static str, index: usize, component: usize, value: f64) {
         let (k, step) = (self.k, self.step);
         self.entries.push(Entry { k, step, symbol, index, node: None, component, value });
@@ -100,7 +119,8 @@ impl Recorder {
         }
     }
 
-    fn shapes<const D: usize>(
+    /// N_Ip, ∇N_Ip and, where the basis has one, λ_p in 1/m from `lambda` = λ_p h.
+    pub fn shapes<const D: usize>(
         &mut self,
         shape: &Shape<D>,
         lambda: &[SVector<f64, D>],
@@ -117,7 +137,6 @@ impl Recorder {
                 self.entries.push(Entry { k, step, symbol, index: p, node, component, value });
             }
         }
-        // λ in 1/m; the code keeps λ h.
         let lambda: Vec<SVector<f64, D>> = lambda.iter().map(|l| l.component_div(h)).collect();
         self.vectors("lambda", &lambda);
     }
@@ -167,7 +186,7 @@ pub fn trace_in<const D: usize>(
 ) -> Result<(Vec<Entry>, State<D>), Breakdown> {
     let model = Model::<D>::of(scene);
     let mut state = model.initial_state(scene);
-    let mut recorder = Recorder { entries: Vec::new(), k: 0, step: 0 };
+    let mut recorder = Recorder::default();
     recorder.vectors("x_p", &state.particle.x);
     recorder.vectors("v_p", &state.particle.v);
     let cost = &mut Cost::default();

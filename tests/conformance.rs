@@ -7,7 +7,6 @@
 mod support;
 
 use lme_mpm::basis::{Scratch, tabulate};
-use lme_mpm::check::{self, Tolerance, compare};
 use lme_mpm::continuum::law::{self, LinearElastic};
 use lme_mpm::continuum::shape::Shape;
 use lme_mpm::cost::Cost;
@@ -16,17 +15,18 @@ use lme_mpm::measure::rms;
 use lme_mpm::model::Model;
 use lme_mpm::scene::{DYKA, Scene};
 use lme_mpm::study::stability::predicted;
-use lme_mpm::trace::{self, Entry, hex};
+use lme_mpm::trace::{self, Entry, Recorder, hex, number};
 use nalgebra::{Matrix2, Vector1};
+use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use support::*;
 
 /// The kit's own version: it changes when a number or a column does.
-const VERSION: &str = "1.0.0";
+const VERSION: &str = "2.0.0";
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/conformance")
@@ -49,102 +49,129 @@ struct Piece {
     text: String,
 }
 
-/// Every basis at points inside a cell, on nodes, beside them, near the end.
-fn basis_values() -> String {
-    let mut text = String::from("basis,x_over_h,node,N,N_hex,dN_dx_times_h,dN_dx_times_h_hex\n");
-    for (name, sets) in BASES {
-        let scene = dyka(&[sets, &["grid.cells=8", "body.length=8", "time.end=1"], BAR].concat());
-        let model = Model::<1>::of(&scene);
-        for x in [0.25, 0.5, 1.0, 2.75, 3.999, 4.0, 4.001, 6.5, 7.75, 8.0] {
-            let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
-            let points = [Vector1::new(x)];
-            let cost = &mut Cost::default();
-            let table =
-                tabulate(&mut shape, &mut scratch, cost, &model.basis, &model.grid, &points);
-            if table.is_err() {
-                continue; // uGIMP's particle would reach beyond the grid
-            }
-            for (I, N, grad) in shape.of(0) {
-                writeln!(text, "{name},{x},{I},{},{}", both(N), both(grad[0])).unwrap();
-            }
+/// Entries of a file of level 0: what is given in step 0, what a port makes of it after.
+#[derive(Default)]
+struct Kernel(Vec<Entry>);
+
+impl Kernel {
+    fn push(&mut self, k: usize, step: usize, symbol: &'static str, index: usize, values: &[f64]) {
+        for (component, value) in values.iter().copied().enumerate() {
+            self.0.push(Entry { k, step, symbol, index, node: None, component, value });
         }
     }
-    text
+
+    fn text(&self) -> String {
+        in_both(&self.0)
+    }
 }
 
-/// The bar's regions and probes on a body of length 8.
-const BAR: &[&str] = &["initial_velocity=[]", "probe=[]"];
+/// The bar that level 0 tabulates shape functions on: cells of a quarter of a metre, so
+/// that places in cells are exact and a forgotten h shows.
+const QUARTERS: [&str; 5] =
+    ["body.length=2", "grid.cells=8", "time.end=1", "initial_velocity=[]", "probe=[]"];
+
+/// A basis at points inside a cell, on nodes, beside them, near the end.
+fn basis_values(sets: &[&str]) -> String {
+    let model = Model::<1>::of(&dyka(&[sets, &QUARTERS].concat()));
+    let tabulated = |points: &[Vector1<f64>]| {
+        let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
+        let cost = &mut Cost::default();
+        tabulate(&mut shape, &mut scratch, cost, &model.basis, &model.grid, points)
+            .map(|()| (shape, scratch.lambda))
+    };
+    let places = [0.25, 0.5, 1.0, 2.75, 3.999, 4.0, 4.001, 6.5, 7.75, 8.0];
+    let places = places.map(|cells| Vector1::new(0.25 * cells));
+    // uGIMP's particles must not reach beyond the grid.
+    let places: Vec<_> = places.into_iter().filter(|x| tabulated(&[*x]).is_ok()).collect();
+    let (shape, lambda) = tabulated(&places).unwrap();
+    let mut kernel = Kernel::default();
+    for (p, x) in places.iter().enumerate() {
+        kernel.push(0, 0, "x_p", p, x.as_slice());
+    }
+    let mut recorder = Recorder::default();
+    recorder.at(0, 2).shapes(&shape, &lambda, &model.grid.h);
+    kernel.0.extend(recorder.entries);
+    kernel.text()
+}
 
 fn law_values() -> String {
-    let mut text = String::from("E,nu,eps_xx,eps_xy,eps_yy,symbol,value,value_hex\n");
+    let mut kernel = Kernel::default();
+    let mut k = 0;
     for (E, nu) in [(200e9, 0.0), (1000.0, 0.3), (7.0, -0.4)] {
         for [xx, xy, yy] in [[1e-3, 2e-4, -4e-4], [0.0, 0.1, 0.0], [-0.2, 0.0, 0.3]] {
             let d_eps = Matrix2::new(xx, xy, xy, yy);
             let law = LinearElastic::new(E, nu);
             let sigma = law.stress_increment(&d_eps);
-            let rho = law::density(1.0, &d_eps).unwrap();
-            for (symbol, value) in [
-                ("d_sigma_xx", sigma[(0, 0)]),
-                ("d_sigma_xy", sigma[(0, 1)]),
-                ("d_sigma_yy", sigma[(1, 1)]),
-                ("rho_over_rho_before", rho),
-                ("energy_density_of_d_sigma", law.energy_density(&sigma)),
-            ] {
-                writeln!(text, "{E:e},{nu},{xx},{xy},{yy},{symbol},{}", both(value)).unwrap();
-            }
+            kernel.push(k, 0, "E", 0, &[E]);
+            kernel.push(k, 0, "nu", 0, &[nu]);
+            kernel.push(k, 0, "d_eps_p", 0, d_eps.as_slice());
+            kernel.push(k, 6, "rho_p", 0, &[law::density(1.0, &d_eps).unwrap()]);
+            kernel.push(k, 6, "sigma_p", 0, sigma.as_slice());
+            kernel.push(k, 6, "W_p", 0, &[law.energy_density(&sigma)]);
+            k += 1;
         }
     }
-    text
+    kernel.text()
 }
 
 fn measure_values() -> String {
-    let mut text = String::from("computed,exact,rms,rms_hex\n");
-    for (a, b) in [
-        (vec![3.0, 1.0], vec![0.0, 5.0]),
-        (vec![1.0, -1.0], vec![0.0, 0.0]),
-        (vec![0.1, 0.2, 0.4], vec![0.1, 0.25, 0.3]),
-    ] {
-        let value = rms(a.iter().copied().zip(b.iter().copied()));
-        let list = |list: &[f64]| list.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
-        writeln!(text, "{},{},{}", list(&a), list(&b), both(value)).unwrap();
+    let mut kernel = Kernel::default();
+    let cases: [(&[f64], &[f64]); 3] = [
+        (&[3.0, 1.0], &[0.0, 5.0]),
+        (&[1.0, -1.0], &[0.0, 0.0]),
+        (&[0.1, 0.2, 0.4], &[0.1, 0.25, 0.3]),
+    ];
+    for (k, (computed, exact)) in cases.into_iter().enumerate() {
+        for (n, (phi, phi_exact)) in computed.iter().zip(exact).enumerate() {
+            kernel.push(k, 0, "phi", n, &[*phi]);
+            kernel.push(k, 0, "phi_exact", n, &[*phi_exact]);
+        }
+        let pairs = computed.iter().copied().zip(exact.iter().copied());
+        kernel.push(k, 1, "rms", 0, &[rms(pairs)]);
     }
-    text
+    kernel.text()
 }
 
 fn exact_values() -> String {
-    let scene = dyka(&[]);
-    let exact = Exact::of(&scene).unwrap();
-    let mut text =
-        String::from("x,t,velocity,velocity_hex,stress,stress_hex,displacement,displacement_hex\n");
-    let transit = transit();
+    let exact = Exact::of(&dyka(&[])).unwrap();
+    let mut places = Vec::new();
     for x in [0.0, 0.05, 0.099, 0.12, 0.1333] {
         for tau in [0.1, 0.3, 0.9, 1.6, 2.1, 2.9, 3.6, 3.9, 17.3] {
-            let t = tau * transit;
-            let f = exact.at(x, t);
-            writeln!(
-                text,
-                "{x},{t:?},{},{},{}",
-                both(f.velocity),
-                both(f.stress),
-                both(f.displacement)
-            )
-            .unwrap();
+            places.push((x, tau * transit()));
         }
+    }
+    let mut kernel = Kernel::default();
+    let fields = |(x, t): &(f64, f64)| exact.at(*x, *t);
+    let columns: [(usize, &'static str, &dyn Fn(&(f64, f64)) -> f64); 5] = [
+        (0, "x", &|place| place.0),
+        (0, "t", &|place| place.1),
+        (1, "v", &|place| fields(place).velocity),
+        (1, "sigma", &|place| fields(place).stress),
+        (1, "u", &|place| fields(place).displacement),
+    ];
+    for (step, symbol, value) in columns {
+        for (n, place) in places.iter().enumerate() {
+            kernel.push(0, step, symbol, n, &[value(place)]);
+        }
+    }
+    kernel.text()
+}
+
+/// A trace with one column more, the value in hexadecimal.
+fn in_both(entries: &[Entry]) -> String {
+    let decimal = String::from_utf8(trace::csv(entries, false).unwrap()).unwrap();
+    let mut lines = decimal.lines();
+    let mut text = format!("{},hex\n", lines.next().unwrap());
+    for (line, entry) in lines.zip(entries) {
+        assert_eq!(number(&hex(entry.value)), Some(entry.value));
+        writeln!(text, "{line},{}", hex(entry.value)).unwrap();
     }
     text
 }
 
-/// A trace with one column more, the value in hexadecimal.
 fn traced(sets: &[&str], steps: usize, keep: impl Fn(&Entry) -> bool) -> String {
     let entries = trace::trace(&dyka(sets), steps).unwrap();
-    let kept: Vec<Entry> = entries.into_iter().filter(keep).collect();
-    let decimal = String::from_utf8(trace::csv(&kept, false).unwrap()).unwrap();
-    let mut lines = decimal.lines();
-    let mut text = format!("{},hex\n", lines.next().unwrap());
-    for (line, entry) in lines.zip(&kept) {
-        writeln!(text, "{line},{}", hex(entry.value)).unwrap();
-    }
-    text
+    in_both(&entries.into_iter().filter(keep).collect::<Vec<Entry>>())
 }
 
 /// What the probes of the bar follow: its last particle, and the one nearest to 3L/4.
@@ -232,19 +259,25 @@ fn kit() -> Vec<Piece> {
         class,
         text,
     };
-    let mut kit = vec![
-        piece(
-            0,
-            "basis.csv",
-            "shape functions on a bar of 8 cells with one cell beyond its free end",
-            &[],
-            "kernel",
-            basis_values(),
-        ),
-        piece(0, "law.csv", "elastic law and density in plane strain", &[], "kernel", law_values()),
-        piece(0, "measure.csv", "root mean square (39)", &[], "kernel", measure_values()),
-        piece(0, "exact.csv", "the exact bar by Riemann invariants", &[], "kernel", exact_values()),
-    ];
+    let mut kit = Vec::new();
+    for (name, says, sets) in [
+        ("basis_linear.csv", "linear shape functions", BASES[0].1),
+        ("basis_ugimp.csv", "uGIMP", BASES[1].1),
+        ("basis_bspline.csv", "quadratic B-splines", BASES[2].1),
+        ("basis_lme_wide.csv", "local max-ent, γ = 0.8", BASES[3].1),
+        ("basis_lme_middle.csv", "local max-ent, γ = 1.8", BASES[4].1),
+        ("basis_lme_narrow.csv", "local max-ent, γ = 4", BASES[5].1),
+    ] {
+        let scene = [sets, &QUARTERS].concat();
+        kit.push(piece(0, name, says, &scene, "kernel", basis_values(sets)));
+    }
+    for (name, says, text) in [
+        ("law.csv", "elastic law in plane strain from σ = 0, density from ρ = 1", law_values()),
+        ("measure.csv", "root mean square (39)", measure_values()),
+        ("exact.csv", "the exact bar by Riemann invariants", exact_values()),
+    ] {
+        kit.push(piece(0, name, says, &[], "kernel", text));
+    }
     let lme: &[&'static str] = &["basis.kind=lme", "basis.gamma=0.8"];
     for (name, ten, says, sets) in [
         ("linear_1.csv", "linear_10.csv", "linear basis", &[][..]),
@@ -340,41 +373,49 @@ const CLASSES: [(&str, f64, f64, &str); 7] = [
     ("none", 0.0, 0.0, "no numbers"),
 ];
 
+/// `manifest.json`.
+#[derive(Serialize)]
+struct Manifest {
+    version: &'static str,
+    tolerances: BTreeMap<&'static str, Class>,
+    files: Vec<File>,
+}
+
+#[derive(Serialize)]
+struct Class {
+    relative: f64,
+    absolute: f64,
+    reason: &'static str,
+}
+
+#[derive(Serialize)]
+struct File {
+    level: u8,
+    file: String,
+    says: &'static str,
+    scene: Vec<&'static str>,
+    columns: Vec<String>,
+    rows: usize,
+    tolerance: &'static str,
+}
+
 fn manifest(kit: &[Piece]) -> String {
-    let quote = |text: &str| format!("\"{}\"", text.replace('"', "\\\""));
-    let mut text = format!("{{\n  \"version\": \"{VERSION}\",\n  \"tolerances\": {{\n");
-    for (n, (class, relative, absolute, why)) in CLASSES.iter().enumerate() {
-        let comma = if n + 1 < CLASSES.len() { "," } else { "" };
-        writeln!(
-            text,
-            "    {}: {{ \"relative\": {relative:e}, \"absolute\": {absolute:e}, \"reason\": {} }}{comma}",
-            quote(class),
-            quote(why)
-        )
-        .unwrap();
-    }
-    text += "  },\n  \"files\": [\n";
-    for (n, piece) in kit.iter().enumerate() {
-        let columns: Vec<String> =
-            piece.text.lines().next().unwrap().split(',').map(quote).collect();
-        let sets: Vec<String> = piece.scene.iter().map(|set| quote(set)).collect();
-        let comma = if n + 1 < kit.len() { "," } else { "" };
-        writeln!(
-            text,
-            "    {{\n      \"level\": {},\n      \"file\": {},\n      \"says\": {},\n      \
-             \"scene\": [{}],\n      \"columns\": [{}],\n      \"rows\": {},\n      \
-             \"tolerance\": {}\n    }}{comma}",
-            piece.level,
-            quote(&format!("level-{}/{}", piece.level, piece.name)),
-            quote(piece.says),
-            sets.join(", "),
-            columns.join(", "),
-            piece.text.lines().count() - 1,
-            quote(piece.class)
-        )
-        .unwrap();
-    }
-    text + "  ]\n}\n"
+    let class = |(name, relative, absolute, reason)| (name, Class { relative, absolute, reason });
+    let file = |piece: &Piece| File {
+        level: piece.level,
+        file: format!("level-{}/{}", piece.level, piece.name),
+        says: piece.says,
+        scene: piece.scene.clone(),
+        columns: piece.text.lines().next().unwrap().split(',').map(String::from).collect(),
+        rows: piece.text.lines().count() - 1,
+        tolerance: piece.class,
+    };
+    let manifest = Manifest {
+        version: VERSION,
+        tolerances: CLASSES.into_iter().map(class).collect(),
+        files: kit.iter().map(file).collect(),
+    };
+    serde_json::to_string_pretty(&manifest).unwrap() + "\n"
 }
 
 /// The files of the kit are what this program makes; with `KIT_UPDATE` set it writes
@@ -409,22 +450,29 @@ fn conformance_kit_is_current() {
 /// The manifest has what its schema requires, and nothing else.
 #[test]
 fn conformance_manifest_keeps_its_form() {
-    let text = fs::read_to_string(folder().join("manifest.json")).unwrap();
-    let script = "import json, sys; m = json.load(open(sys.argv[1])); \
-                  s = json.load(open(sys.argv[2])); \
-                  assert set(m) == set(s['required']); \
-                  item = s['properties']['files']['items']; \
-                  assert all(set(f) == set(item['required']) for f in m['files']); \
-                  assert all(f['tolerance'] in m['tolerances'] for f in m['files']); \
-                  print(len(m['files']))";
-    let arguments = ["manifest.json", "manifest.schema.json"].map(|name| folder().join(name));
-    let Ok(output) = Command::new("python3").args(["-c", script]).args(&arguments).output() else {
-        assert!(std::env::var_os("CI").is_none(), "python3 is needed in CI");
-        return;
+    let kit = kit();
+    let manifest: Value = serde_json::from_str(&manifest(&kit)).unwrap();
+    let schema = fs::read_to_string(folder().join("manifest.schema.json")).unwrap();
+    let schema: Value = serde_json::from_str(&schema).unwrap();
+    let keeps = |value: &Value, schema: &Value| {
+        let mut keys: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
+        let required = schema["required"].as_array().unwrap();
+        let mut required: Vec<&str> = required.iter().map(|key| key.as_str().unwrap()).collect();
+        keys.sort_unstable();
+        required.sort_unstable();
+        assert_eq!(keys, required);
     };
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let files = String::from_utf8_lossy(&output.stdout).trim().parse::<usize>().unwrap();
-    assert_eq!(files, text.matches("\"level\":").count());
+    keeps(&manifest, &schema);
+    for tolerance in manifest["tolerances"].as_object().unwrap().values() {
+        keeps(tolerance, &schema["properties"]["tolerances"]["additionalProperties"]);
+    }
+    let files = manifest["files"].as_array().unwrap();
+    assert_eq!(files.len(), kit.len());
+    for file in files {
+        keeps(file, &schema["properties"]["files"]["items"]);
+        let class = file["tolerance"].as_str().unwrap();
+        assert!(manifest["tolerances"].get(class).is_some(), "{class}");
+    }
 }
 
 /// What must fail, fails, and says why.
@@ -443,91 +491,5 @@ fn conformance_must_fail() {
                 assert!(names.contains("breakdown") && stopped.breakdown.moment().step < 5, "{to}");
             }
         }
-    }
-}
-
-/// The demonstration port passes levels 1 to 3, each with the tolerance of its class.
-#[test]
-fn conformance_of_the_port() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/port/port.py");
-    for piece in kit().iter().filter(|piece| {
-        (1..=3).contains(&piece.level)
-            && !piece.name.ends_with("_3.csv")
-            && piece.name != "bands.csv"
-    }) {
-        let basis = if piece.name.starts_with("lme") { "0.8" } else { "linear" };
-        let (cells, steps) = match piece.level {
-            1 => ("4", "1"),
-            2 => ("4", "10"),
-            _ => ("40", "320"),
-        };
-        let arguments = [cells, "2", "0.5", steps, basis];
-        let Ok(output) = Command::new("python3").arg(&file).args(arguments).output() else {
-            assert!(std::env::var_os("CI").is_none(), "python3 is needed in CI");
-            return;
-        };
-        let theirs = check::read("port.py", output.stdout.as_slice()).unwrap();
-        let reference = check::read(piece.name, piece.text.as_bytes()).unwrap();
-        // The reference is a part of what the port prints.
-        let theirs = check::common(&reference, theirs);
-        let class = CLASSES.iter().find(|class| class.0 == piece.class).unwrap();
-        let tolerance = Tolerance { relative: class.1, absolute: class.2 };
-        let report = compare(&reference, &theirs, tolerance).unwrap();
-        assert!(report.divergence.is_none(), "{}: {}", piece.name, report.text());
-        assert!(report.missing.is_empty(), "{}: {}", piece.name, report.text());
-    }
-}
-
-/// What `tests/port/kernels.py` prints for a file of level 0, row by row.
-fn kernels(what: &str, bug: &str) -> Option<Vec<Vec<f64>>> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/port/kernels.py");
-    let table = folder().join(format!("level-0/{what}.csv"));
-    let output = Command::new("python3").arg(file).arg(what).arg(table).arg(bug).output().ok()?;
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = String::from_utf8(output.stdout).unwrap();
-    let row = |line: &str| line.split(' ').map(|x| x.parse().unwrap()).collect();
-    Some(text.lines().map(row).collect())
-}
-
-/// The largest difference of a port's kernels from level 0, relative to the largest
-/// value of each column.
-fn off_by(what: &str, columns: &[&str], bug: &str) -> Option<f64> {
-    let theirs = kernels(what, bug)?;
-    let text = fs::read_to_string(folder().join(format!("level-0/{what}.csv"))).unwrap();
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let header = reader.headers().unwrap().clone();
-    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
-    assert_eq!(rows.len(), theirs.len());
-    let mut worst = 0.0_f64;
-    for (n, column) in columns.iter().enumerate() {
-        let at = header.iter().position(|name| name == *column).unwrap();
-        let values: Vec<f64> = rows.iter().map(|row| row[at].parse().unwrap()).collect();
-        let hex_at = header.iter().position(|name| name == format!("{column}_hex")).unwrap();
-        let largest = values.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
-        for (row, value) in rows.iter().zip(&values).map(|(row, value)| (&row[hex_at], value)) {
-            assert_eq!(trace::number(row), Some(*value), "hexadecimal and decimal differ");
-        }
-        for (value, row) in values.iter().zip(&theirs) {
-            worst = worst.max((value - row[n]).abs() / largest);
-        }
-    }
-    Some(worst)
-}
-
-/// The measure and the exact bar of the port pass level 0; without the square, or with
-/// ends that give back half of a wave, they do not.
-#[test]
-fn conformance_of_the_kernels() {
-    let exact = ["velocity", "stress", "displacement"];
-    for (what, columns, bug) in
-        [("measure", &["rms"][..], "missing-square"), ("exact", &exact, "half-reflection")]
-    {
-        let Some(right) = off_by(what, columns, "") else {
-            assert!(std::env::var_os("CI").is_none(), "python3 is needed in CI");
-            return;
-        };
-        assert!(right < 1e-12, "{what}: {right:e}");
-        let wrong = off_by(what, columns, bug).unwrap();
-        assert!(wrong > 0.1, "{bug} was not found: {wrong:e}");
     }
 }

@@ -1,16 +1,13 @@
-//! Traces, their comparison, and a port in plain Python that is held against them.
+//! Traces, and their comparison.
 
 mod support;
 
-use lme_mpm::check::{self, Report, Tolerance, compare, ulps};
+use lme_mpm::check::{self, Tolerance, compare, ulps};
 use lme_mpm::fault::{Fault, Moment};
 use lme_mpm::model::Model;
 use lme_mpm::scene::Scene;
 use lme_mpm::time;
 use lme_mpm::trace::{self, Entry, hex, number, trace_in};
-use std::fmt::Write;
-use std::path::Path;
-use std::process::Command;
 use support::*;
 
 const USUAL: Tolerance = Tolerance { relative: 1e-9, absolute: 1e-12 };
@@ -130,84 +127,4 @@ fn check_finds_the_first_difference() {
         let fault = check::read("port.csv", text.as_bytes()).unwrap_err().to_string();
         assert!(fault.contains(words) && fault.contains("port.csv"), "{fault}");
     }
-}
-
-/// The port's output for a small bar, `None` where there is no python3.
-fn port(arguments: &[&str]) -> Option<Vec<Entry>> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/port/port.py");
-    let output = Command::new("python3").arg(file).args(arguments).output().ok()?;
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    Some(check::read("port.py", output.stdout.as_slice()).unwrap_or_else(|fault| panic!("{fault}")))
-}
-
-/// Without python3 these tests check nothing; where CI runs, it must be there.
-fn no_python() {
-    assert!(std::env::var_os("CI").is_none(), "python3 is needed in CI");
-    eprintln!("python3 is not there: the port was not checked");
-}
-
-fn held_against(sets: &[&str], arguments: &[&str]) -> Option<Report> {
-    let theirs = port(arguments)?;
-    Some(compare(&reference(sets, arguments[3].parse().unwrap()), &theirs, USUAL).unwrap())
-}
-
-/// A second program in another language, written from the book: every intermediate of
-/// forty steps agrees, with the linear basis and with local max-ent.
-#[test]
-fn port_agrees() {
-    for (sets, basis) in [
-        (&["grid.cells=8"][..], "linear"),
-        (&["grid.cells=8", "basis.kind=lme", "basis.gamma=0.8"], "0.8"),
-        (&["grid.cells=8", "basis.kind=lme", "basis.gamma=4"], "4"),
-    ] {
-        let Some(report) = held_against(sets, &["8", "2", "0.5", "40", basis]) else {
-            return no_python();
-        };
-        assert!(report.divergence.is_none(), "{basis}: {}", report.text());
-        assert!(report.compared > 5000 && report.missing.is_empty(), "{}", report.text());
-    }
-}
-
-/// Ports with one mistake each: every one is found, in the step where it is made.
-#[test]
-fn port_mistakes_are_found() {
-    let linear = &["grid.cells=6"][..];
-    let wide = &["grid.cells=6", "basis.kind=lme", "basis.gamma=0.8"][..];
-    let cases: [(&str, &str, &[&str], usize, &str); 15] = [
-        ("gradient-without-h", "linear", linear, 2, "grad_N_Ip"),
-        ("node-off-by-one", "0.8", wide, 2, "N_Ip"),
-        ("gamma-is-beta-over-h2", "0.8", wide, 2, "N_Ip"),
-        ("cut-after-solving", "0.8", wide, 2, "grad_N_Ip"),
-        ("mass-of-the-whole-cell", "linear", linear, 3, "m_I"),
-        ("fixed-node-moves", "0.8", wide, 4, "v_I"),
-        ("density-before-strain", "linear", linear, 6, "rho_p"),
-        ("old-stress", "linear", linear, 7, "f_int_I"),
-        ("first-density", "linear", linear, 7, "f_int_I"),
-        ("sign-of-force", "linear", linear, 7, "f_int_I"),
-        ("force-on-fixed-node", "linear", linear, 7, "f_I"),
-        ("step-8-as-printed", "linear", linear, 8, "p_I_advanced"),
-        ("old-N-in-corrector", "linear", linear, 9, "v_p"),
-        ("whole-predictor", "linear", linear, 1, "v_p"),
-        ("no-half-dt2", "linear", linear, 1, "x_p"),
-    ];
-    let mut table = String::from("mistake,found at k,step,symbol,likely cause as reported\n");
-    for (bug, basis, sets, step, symbol) in cases {
-        let Some(report) = held_against(sets, &["6", "2", "0.5", "20", basis, bug]) else {
-            return no_python();
-        };
-        let Some(found) = report.divergence else { panic!("{bug} was not found") };
-        let Entry { k, step: at, symbol: name, .. } = found.reference;
-        assert_eq!((at, name), (step, symbol), "{bug}, k = {k}");
-        let cause = found.cause.unwrap_or("–".into()).replace(',', ";");
-        writeln!(table, "{bug},{k},{at},{name},{cause}").unwrap();
-    }
-    // The reference has another mass matrix than the port.
-    let theirs = port(&["6", "2", "0.3", "3", "linear"]).unwrap();
-    let consistent = reference(&["grid.cells=6", "mass=consistent", "time.cfl=0.3"], 3);
-    let report = compare(&consistent, &theirs, USUAL).unwrap();
-    let found = report.divergence.unwrap();
-    assert_eq!((found.reference.step, found.reference.symbol), (4, "v_I"));
-    let cause = found.cause.unwrap().replace(',', ";");
-    writeln!(table, "lumped for consistent,{},4,v_I,{cause}", found.reference.k).unwrap();
-    approve("port__mistakes", &table);
 }

@@ -1,28 +1,51 @@
 """A port of the bar in plain Python: 1D, linear or local max-ent basis, lumped mass,
-Newmark's predictor-corrector. It prints a trace for `lme-mpm check`.
+Newmark's predictor-corrector. It prints the columns that `lme-mpm check` reads:
 
-    python3 port.py CELLS PARTICLES_PER_CELL CFL STEPS linear|GAMMA [BUG]
+    python3 port.py trace CELLS PARTICLES_PER_CELL CFL STEPS linear|GAMMA
+    python3 port.py errors CELLS PARTICLES_PER_CELL CFL STEPS linear|GAMMA
+    python3 port.py basis FILE LENGTH CELLS linear|GAMMA
+    python3 port.py law|measure|exact FILE
 
-With BUG it makes one mistake on purpose, of those that ports make; the names are in
-the code, each where it is made.
+The first runs the bar, the second measures the errors of its two histories; the others
+answer a file of level 0 of the conformance kit, of which they read what is given, its
+step 0. With `bug=NAME` at the end it makes one
+mistake on purpose, of those that ports make; the names are in the code, each where it
+is made.
 """
+import csv
 import math
 import sys
 
-cells, per_cell, cfl, steps, basis = sys.argv[1:6]
-cells, per_cell, cfl, steps = int(cells), int(per_cell), float(cfl), int(steps)
-gamma = None if basis == "linear" else float(basis)
-bug = sys.argv[6] if len(sys.argv) > 6 else ""
+what, *arguments = sys.argv[1:]
+bug = arguments.pop()[4:] if arguments[-1].startswith("bug=") else ""
 
-# The scene: fixed at x = 0, free at x = L, one cell beyond.
+# The bar: fixed at x = 0, free at x = L, one cell of the grid beyond.
 L, rho0, E, v0, end = 0.1333, 7833.0, 200e9, 5.0, 1.05521074812570e-4
-h = L / cells
-nodes = cells + 2
-c = math.sqrt(E / rho0)
-dt = end / max(1, math.ceil(end * c / (cfl * h) * (1 - 1e-9)))
+c, Z = math.sqrt(E / rho0), math.sqrt(E * rho0)
 
 
-def linear(x):
+def row(k, step, symbol, index, node, component, value):
+    if what != "errors":
+        print(f"{k},{step},{symbol},{index},{node},{component},{value!r}")
+
+
+def show(k, step, symbol, values):
+    for n, value in enumerate(values):
+        row(k, step, symbol, n, "", 0, value)
+
+
+def show_shapes(k, tables):
+    """Tables of (node, N, dN/dx), one for each particle."""
+    for symbol, part in (("N_Ip", 1), ("grad_N_Ip", 2)):
+        for p, table in enumerate(tables):
+            for entry in table:
+                row(k, 2, symbol, p, entry[0], 0, entry[part])
+
+
+# --- Shape functions: [(node, N, dN/dx), ...], and lambda of local max-ent ---
+
+
+def linear(x, h, nodes):
     """N and dN/dx of the two nodes of the cell."""
     i = min(int(x / h), nodes - 2)
     s = x / h - i
@@ -32,9 +55,9 @@ def linear(x):
     return [(i, 1 - s, -slope), (i + 1, s, slope)], None
 
 
-def local_max_ent(x):
+def local_max_ent(x, h, nodes, gamma):
     """(31) to (37) with xi = (x - x_I)/h, so that gamma = beta h^2."""
-    g = gamma / h**4 if bug == "gamma-is-beta-over-h2" else gamma
+    g = gamma * h**4 if bug == "gamma-is-beta-over-h2" else gamma
     reach = math.sqrt(-math.log(1e-6) / gamma)
     i = min(int(x / h), nodes - 2)
     near = [I for I in range(nodes) if abs(x / h - I) <= reach or I in (i, i + 1)]
@@ -63,90 +86,192 @@ def local_max_ent(x):
     return [(I + shift, a, -a * s / square * slope) for I, a, s in zip(near, p, xi)], lam / h
 
 
-shape_of = linear if gamma is None else local_max_ent
-x = [(n // per_cell + (n % per_cell + 0.5) / per_cell) * h for n in range(cells * per_cell)]
-m = [rho0 * (h if bug == "mass-of-the-whole-cell" else h / per_cell)] * len(x)
-v = [v0 if 0.75 * L <= y else 0.0 for y in x]
-rho = [rho0] * len(x)
-sigma = [0.0] * len(x)
-d_eps = [0.0] * len(x)
-P = range(len(x))
-
-print("k,step,symbol,index,node,component,value")
+def shape_of(x, h, nodes, basis):
+    if basis == "linear":
+        return linear(x, h, nodes)
+    return local_max_ent(x, h, nodes, float(basis))
 
 
-def show(k, step, symbol, values):
-    for n, value in enumerate(values):
-        print(f"{k},{step},{symbol},{n},,0,{value!r}")
+# --- Level 0: each answers what a file gives, {case: {symbol: {index: [components]}}} ---
 
 
-shapes = [[] for _ in P]
-room = nodes + 1  # one more, for a node numbered wrongly
-mI, pI, fI = [0.0] * room, [0.0] * room, [0.0] * room
-show(0, 0, "x_p", x)
-show(0, 0, "v_p", v)
-for k in range(steps + 1):
-    step = dt if k else 0.0
-    # 1: predictor, with the nodal values of the step before.
-    for p in P:
-        vel = sum(pI[I] / mI[I] * N for I, N, _ in shapes[p] if mI[I] > 0)
-        acc = sum(fI[I] / mI[I] * N for I, N, _ in shapes[p] if mI[I] > 0)
-        x[p] += step * vel + (0.0 if bug == "no-half-dt2" else 0.5 * step * step * acc)
-        v[p] += (1.0 if bug == "whole-predictor" else 0.5) * step * acc
-    show(k, 1, "x_p", x)
-    show(k, 1, "v_p", v)
-    # 2: nodal values are forgotten, shape functions made anew.
-    old_shapes = shapes
-    tables = [shape_of(y) for y in x]
-    shapes = [table[0] for table in tables]
-    for symbol, part in (("N_Ip", 1), ("grad_N_Ip", 2)):
+def law(given):
+    """(3) in plane strain from no stress, (17) from rho = 1, and the strain energy."""
+    for k, case in given.items():
+        young, nu, (xx, xy, yx, yy) = case["E"][0][0], case["nu"][0][0], case["d_eps_p"][0]
+        lame = young * nu / ((1 + nu) * (1 - (1 if bug == "plane-stress" else 2) * nu))
+        mu, trace = young / (2 * (1 + nu)), xx + yy
+        sigma = [lame * trace + 2 * mu * xx, 2 * mu * xy, 2 * mu * yx, lame * trace + 2 * mu * yy]
+        row(k, 6, "rho_p", 0, "", 0, 1 / (1 + trace))
+        for i, value in enumerate(sigma):
+            row(k, 6, "sigma_p", 0, "", i, value)
+        energy = 0.5 * sum(s * e for s, e in zip(sigma, (xx, xy, yx, yy)))
+        row(k, 6, "W_p", 0, "", 0, energy)
+
+
+def rms(pairs):
+    """(39) with its square."""
+    off = [phi - phi_exact for phi, phi_exact in pairs]
+    squares = off if bug == "missing-square" else [a * a for a in off]
+    return math.sqrt(abs(sum(squares)) / len(off))
+
+
+def measure(given):
+    for k, case in given.items():
+        pairs = [(case["phi"][n][0], case["phi_exact"][n][0]) for n in case["phi"]]
+        show(k, 1, "rms", [rms(pairs)])
+
+
+def thrown(a, b):
+    """Length of the part of [a, b] that was thrown."""
+    return max(0.0, min(b, L) - max(a, 0.75 * L))
+
+
+def invariant(family, x, s):
+    """R at the end of the path s (m), and its integral along it (m m/s)."""
+    sign, total = 1.0, 0.0
+    while True:
+        to_end = x if family == 1 else L - x
+        part = min(s, to_end)
+        a, b = (x - part, x) if family == 1 else (x, x + part)
+        total += sign * 0.5 * v0 * thrown(a, b)
+        if s <= to_end:
+            foot = x - s if family == 1 else x + s
+            return sign * 0.5 * (v0 if foot >= 0.75 * L else 0.0), total
+        # Fixed at x = 0, free at x = L; the printed ends give half of it.
+        turned = -1.0 if family == 1 else 1.0
+        sign *= 0.5 * turned if bug == "half-reflection" else turned
+        s, x, family = s - to_end, (0.0 if family == 1 else L), 3 - family
+
+
+def bar(x, t):
+    """Appendix A: velocity, stress and displacement of the bar."""
+    (one, way_one), (two, way_two) = invariant(1, x, c * t), invariant(2, x, c * t)
+    return one + two, Z * (two - one), (way_one + way_two) / c
+
+
+def exact(given):
+    places, times = given["0"]["x"], given["0"]["t"]
+    fields = [bar(places[n][0], times[n][0]) for n in places]
+    for n, symbol in enumerate(("v", "sigma", "u")):
+        show(0, 1, symbol, [field[n] for field in fields])
+
+
+def basis_values(given, length, cells, basis):
+    h, nodes = float(length) / int(cells), int(cells) + 2
+    tables = [shape_of(x[0], h, nodes, basis) for x in given["0"]["x_p"].values()]
+    show_shapes(0, [table for table, _ in tables])
+    if basis != "linear":
+        show(0, 2, "lambda", [found for _, found in tables])
+
+
+def given_in(file):
+    given = {}
+    with open(file, newline="") as table:
+        for line in csv.DictReader(table):
+            if line["step"] == "0":
+                case = given.setdefault(line["k"], {}).setdefault(line["symbol"], {})
+                case.setdefault(int(line["index"]), []).append(float(line["value"]))
+    return given
+
+
+# --- Levels 1 to 3: the bar ---
+
+
+def run(cells, per_cell, cfl, steps, basis):
+    """Prints every intermediate; yields, at the end of each time step, the velocity of
+    the last particle and the stress of the one nearest to 3L/4, each with its exact value.
+    """
+    h, nodes = L / cells, cells + 2
+    dt = end / max(1, math.ceil(end * c / (cfl * h) * (1 - 1e-9)))
+    x = [(n // per_cell + (n % per_cell + 0.5) / per_cell) * h for n in range(cells * per_cell)]
+    m = [rho0 * (h if bug == "mass-of-the-whole-cell" else h / per_cell)] * len(x)
+    v = [v0 if 0.75 * L <= y else 0.0 for y in x]
+    rho = [rho0] * len(x)
+    sigma = [0.0] * len(x)
+    d_eps = [0.0] * len(x)
+    P = range(len(x))
+    start, middle = x[:], min(P, key=lambda p: round(abs(x[p] - 0.75 * L) / h, 9))
+
+    shapes = [[] for _ in P]
+    room = nodes + 1  # one more, for a node numbered wrongly
+    mI, pI, fI = [0.0] * room, [0.0] * room, [0.0] * room
+    show(0, 0, "x_p", x)
+    show(0, 0, "v_p", v)
+    for k in range(steps + 1):
+        step = dt if k else 0.0
+        # 1: predictor, with the nodal values of the step before.
         for p in P:
-            for entry in shapes[p]:
-                print(f"{k},2,{symbol},{p},{entry[0]},0,{entry[part]!r}")
-    if gamma is not None:
-        show(k, 2, "lambda", [table[1] for table in tables])
-    # 3: mass and momentum to the nodes.
-    mI, pI = [0.0] * room, [0.0] * room
-    for p in P:
-        for I, N, _ in shapes[p]:
-            mI[I] += m[p] * N
-            pI[I] += m[p] * v[p] * N
-    show(k, 3, "m_I", mI[:nodes])
-    show(k, 3, "p_I", pI[:nodes])
-    # 4: the fixed node, and nodal velocities.
-    if bug != "fixed-node-moves":
-        pI[0] = 0.0
-    vI = [q / mass if mass > 0 else 0.0 for q, mass in zip(pI, mI)]
-    show(k, 4, "v_I", vI[:nodes])
-    # 5 and 6: strain, density, stress.
-    before = d_eps[:]
-    for p in P:
-        d_eps[p] = step * sum(vI[I] * slope for I, _, slope in shapes[p])
-    show(k, 5, "d_eps_p", d_eps)
-    for p in P:
-        rho[p] /= 1 + (before[p] if bug == "density-before-strain" else d_eps[p])
-    show(k, 6, "rho_p", rho)
-    old_sigma = sigma[:]
-    for p in P:
-        sigma[p] += E * d_eps[p]
-    show(k, 6, "sigma_p", sigma)
-    # 7: forces.
-    used = old_sigma if bug == "old-stress" else sigma
-    fI = [0.0] * room
-    for p in P:
-        for I, _, slope in shapes[p]:
-            density = rho0 if bug == "first-density" else rho[p]
-            fI[I] -= (-1 if bug == "sign-of-force" else 1) * used[p] * slope * m[p] / density
-    show(k, 7, "f_int_I", fI[:nodes])
-    if bug != "force-on-fixed-node":
-        fI[0] = 0.0
-    show(k, 7, "f_I", fI[:nodes])
-    # 8: nodal momentum at the end of the step.
-    for I in range(room):
-        pI[I] += (1.0 if bug == "step-8-as-printed" else 0.5) * fI[I] * step
-    show(k, 8, "p_I_advanced", pI[:nodes])
-    # 9: corrector.
-    for p in P:
-        table = old_shapes[p] if bug == "old-N-in-corrector" and k else shapes[p]
-        v[p] += 0.5 * step * sum(fI[I] / mI[I] * N for I, N, _ in table if mI[I] > 0)
-    show(k, 9, "v_p", v)
+            vel = sum(pI[I] / mI[I] * N for I, N, _ in shapes[p] if mI[I] > 0)
+            acc = sum(fI[I] / mI[I] * N for I, N, _ in shapes[p] if mI[I] > 0)
+            x[p] += step * vel + (0.0 if bug == "no-half-dt2" else 0.5 * step * step * acc)
+            v[p] += (1.0 if bug == "whole-predictor" else 0.5) * step * acc
+        show(k, 1, "x_p", x)
+        show(k, 1, "v_p", v)
+        # 2: nodal values are forgotten, shape functions made anew.
+        old_shapes = shapes
+        tables = [shape_of(y, h, nodes, basis) for y in x]
+        shapes = [table[0] for table in tables]
+        show_shapes(k, shapes)
+        if basis != "linear":
+            show(k, 2, "lambda", [table[1] for table in tables])
+        # 3: mass and momentum to the nodes.
+        mI, pI = [0.0] * room, [0.0] * room
+        for p in P:
+            for I, N, _ in shapes[p]:
+                mI[I] += m[p] * N
+                pI[I] += m[p] * v[p] * N
+        show(k, 3, "m_I", mI[:nodes])
+        show(k, 3, "p_I", pI[:nodes])
+        # 4: the fixed node, and nodal velocities.
+        if bug != "fixed-node-moves":
+            pI[0] = 0.0
+        vI = [q / mass if mass > 0 else 0.0 for q, mass in zip(pI, mI)]
+        show(k, 4, "v_I", vI[:nodes])
+        # 5 and 6: strain, density, stress.
+        before = d_eps[:]
+        for p in P:
+            d_eps[p] = step * sum(vI[I] * slope for I, _, slope in shapes[p])
+        show(k, 5, "d_eps_p", d_eps)
+        for p in P:
+            rho[p] /= 1 + (before[p] if bug == "density-before-strain" else d_eps[p])
+        show(k, 6, "rho_p", rho)
+        old_sigma = sigma[:]
+        for p in P:
+            sigma[p] += E * d_eps[p]
+        show(k, 6, "sigma_p", sigma)
+        # 7: forces.
+        used = old_sigma if bug == "old-stress" else sigma
+        fI = [0.0] * room
+        for p in P:
+            for I, _, slope in shapes[p]:
+                density = rho0 if bug == "first-density" else rho[p]
+                fI[I] -= (-1 if bug == "sign-of-force" else 1) * used[p] * slope * m[p] / density
+        show(k, 7, "f_int_I", fI[:nodes])
+        if bug != "force-on-fixed-node":
+            fI[0] = 0.0
+        show(k, 7, "f_I", fI[:nodes])
+        # 8: nodal momentum at the end of the step.
+        for I in range(room):
+            pI[I] += (1.0 if bug == "step-8-as-printed" else 0.5) * fI[I] * step
+        show(k, 8, "p_I_advanced", pI[:nodes])
+        # 9: corrector.
+        for p in P:
+            table = old_shapes[p] if bug == "old-N-in-corrector" and k else shapes[p]
+            v[p] += 0.5 * step * sum(fI[I] / mI[I] * N for I, N, _ in table if mI[I] > 0)
+        show(k, 9, "v_p", v)
+        yield (v[-1], bar(start[-1], k * dt)[0]), (sigma[middle], bar(start[middle], k * dt)[1])
+
+
+if what != "errors":
+    print("k,step,symbol,index,node,component,value")
+if what in ("trace", "errors"):
+    cells, per_cell, cfl, steps, basis = arguments
+    histories = list(run(int(cells), int(per_cell), float(cfl), int(steps), basis))
+    if what == "errors":
+        velocity, stress = zip(*histories)
+        print("velocity_end", rms(velocity) / v0)
+        print("stress_three_quarter", rms(stress) / (Z * v0 / 2))
+else:
+    kernels = {"basis": basis_values, "law": law, "measure": measure, "exact": exact}
+    kernels[what](given_in(arguments[0]), *arguments[1:])
