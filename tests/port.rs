@@ -193,7 +193,8 @@ fn port_mistakes_are_found() {
     };
     let linear = &["grid.cells=6"][..];
     let wide = &["grid.cells=6", "basis.kind=lme", "basis.gamma=0.8"][..];
-    let of_time_steps: [(&str, &str, &[&str], (usize, &str)); 15] = [
+    type Mistake<'a> = (&'a str, &'a str, &'a [&'a str], (usize, &'a str));
+    let of_time_steps: [Mistake; 15] = [
         ("gradient-without-h", "linear", linear, (2, "grad_N_Ip")),
         ("node-off-by-one", "0.8", wide, (2, "N_Ip")),
         ("gamma-is-beta-over-h2", "0.8", wide, (2, "N_Ip")),
