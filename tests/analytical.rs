@@ -1,14 +1,12 @@
 //! Against closed forms: the exact solution itself, and runs that have one.
 #![allow(non_snake_case)]
 
-mod support;
-
+use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::exact::riemann::{Bar, End, Patch, coupling, eigenvectors, eigenvectors_inverse};
 use lme_mpm::measure::rms;
 use lme_mpm::summary::{Scales, lines};
 use nalgebra::{Matrix2, Vector2};
-use support::*;
 
 const E: f64 = 200e9;
 const RHO: f64 = 7833.0;

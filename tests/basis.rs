@@ -5,8 +5,7 @@
 //! same bits. And what a basis does at ends, on nodes, and at extremes.
 #![allow(non_snake_case)]
 
-mod support;
-
+use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::basis::lme::Failure;
 use lme_mpm::basis::support::at as lme_at;
@@ -17,7 +16,6 @@ use lme_mpm::figure;
 use lme_mpm::grid::Grid;
 use nalgebra::{SMatrix, SVector, Vector1, Vector2, Vector3};
 use proptest::prelude::*;
-use support::*;
 use test_case::test_case;
 
 const UGIMP: Basis = Basis::Ugimp { half_length: [0.25, 0.5, 0.125] };

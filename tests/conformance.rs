@@ -1,11 +1,10 @@
 //! The conformance kit in `data/conformance/`: made anew and compared, byte by byte.
 //!
-//! `KIT_UPDATE=1 cargo test --test conformance` writes it.
+//! `KIT_UPDATE=1 cargo test conformance` writes it.
 
 #![allow(non_snake_case)]
 
-mod support;
-
+use crate::support::*;
 use lme_mpm::basis::{Scratch, tabulate};
 use lme_mpm::continuum::law::{self, LinearElastic};
 use lme_mpm::continuum::shape::Shape;
@@ -23,7 +22,6 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
-use support::*;
 
 /// The kit's own version: it changes when a number or a column does.
 const VERSION: &str = "2.0.0";

@@ -1,14 +1,12 @@
 //! What must stay as it is: mass, momentum, angular momentum, and energy with the
 //! work of the loads.
 
-mod support;
-
+use crate::support::*;
 use lme_mpm::measure;
 use lme_mpm::model::Model;
 use lme_mpm::run::Outcome;
 use lme_mpm::scene::Scene;
 use std::fmt::Write;
-use support::*;
 
 /// Momentum of a free body to n·ε with every scheme, basis and mass matrix, and
 /// the mass of each particle to its last digit.

@@ -1,11 +1,9 @@
 //! Observed order: in time on smooth data, in space on the bar's jumps.
 
-mod support;
-
+use crate::support::*;
 use lme_mpm::measure::{Order, observed_order, rms};
 use lme_mpm::summary::lines;
 use std::fmt::Write;
-use support::*;
 
 /// The slopes of u and v in Δt, against a run of the same grid with 16 times
 /// the steps of the finest, so that the grid's own error drops out.

@@ -1,8 +1,7 @@
 //! The method at its limits. Each test says its GOAL, its SETUP and what is EXPECTED.
 #![allow(non_snake_case)]
 
-mod support;
-
+use crate::support::*;
 use lme_mpm::fault::{Breakdown, Moment};
 use lme_mpm::model::Model;
 use lme_mpm::run::{Stopped, run};
@@ -10,7 +9,6 @@ use lme_mpm::scene::{DYKA, Scene};
 use lme_mpm::time;
 use nalgebra::SVector;
 use proptest::prelude::*;
-use support::*;
 
 /// Runs a scene; a result must be free of NaN, a breakdown must have a name and a
 /// history without NaN.
@@ -116,7 +114,8 @@ fn extremes_particles_on_nodes_and_one_bit_beside() {
         assert!(state.particle.sigma.iter().all(|sigma| sigma[0] == 0.0), "{ulps}");
         assert!(state.particle.v.iter().all(|v| v[0] == 8.0), "{ulps}");
         for sets in BASES.iter().skip(1).map(|(_, sets)| *sets) {
-            let scene = support::scene(FREE_FLIGHT, &[sets, &["grid.beyond.left=3"]].concat());
+            let scene =
+                crate::support::scene(FREE_FLIGHT, &[sets, &["grid.beyond.left=3"]].concat());
             let model = Model::<1>::of(&scene);
             let mut state = model.initial_state(&scene);
             for (p, x) in state.particle.x.iter_mut().enumerate() {

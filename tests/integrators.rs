@@ -1,12 +1,10 @@
 //! The schemes against each other, against theory, and against another program.
 
-mod support;
-
+use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::model::Model;
 use lme_mpm::summary::{cost_lines, lines};
 use lme_mpm::time::generalized_alpha::Parameters;
-use support::*;
 
 /// v and σ of all particles after each of `steps` steps of the bar, thrown so
 /// gently that the particles stay in place to 1e-12 of a cell.

@@ -1,8 +1,7 @@
 //! Laws that hold for any data: at a point, of the sums, of a whole run.
 #![allow(non_snake_case)]
 
-mod support;
-
+use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::basis::{Basis, tabulate};
 use lme_mpm::continuum::law::{LinearElastic, density, symmetric_part};
@@ -14,7 +13,6 @@ use lme_mpm::grid::Grid;
 use lme_mpm::measure;
 use lme_mpm::model::Model;
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2};
-use support::*;
 
 // ---- the pointwise laws --------------------------------------------------------
 

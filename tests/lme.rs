@@ -2,8 +2,7 @@
 //! found.
 #![allow(non_snake_case)]
 
-mod support;
-
+use crate::support::*;
 use lme_mpm::basis::support::at as lme_at;
 use lme_mpm::basis::{Basis, Scratch, tabulate};
 use lme_mpm::continuum::shape::Shape;
@@ -12,7 +11,6 @@ use lme_mpm::figure;
 use lme_mpm::grid::Grid;
 use nalgebra::SVector;
 use std::collections::BTreeMap;
-use support::*;
 
 fn rows(name: &str) -> Vec<Vec<String>> {
     let path = format!("{}/data/reference/{name}", env!("CARGO_MANIFEST_DIR"));

@@ -2,8 +2,7 @@
 //! digits, runs against the exact solutions, and nothing computed undeclared.
 #![allow(non_snake_case)]
 
-mod support;
-
+use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::exact::forced::{Forced, Load};
 use lme_mpm::exact::manufactured::Manufactured;
@@ -13,7 +12,6 @@ use lme_mpm::exact::{Exact, Fields};
 use lme_mpm::measure::rms;
 use lme_mpm::scene::Scene;
 use lme_mpm::time::generalized_alpha::Parameters;
-use support::*;
 
 /// The rows of a reference file, by column name.
 struct Row(csv::StringRecord, csv::StringRecord);

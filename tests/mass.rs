@@ -1,8 +1,7 @@
 //! The consistent mass matrix (13): its sums, its solutions, and its limits.
 #![allow(non_snake_case)]
 
-mod support;
-
+use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::basis::tabulate;
 use lme_mpm::continuum::mass::ConsistentMass;
@@ -14,7 +13,6 @@ use lme_mpm::model::Model;
 use lme_mpm::run::run;
 use lme_mpm::scene::Scene;
 use nalgebra::{DMatrix, DVector, SVector, Vector2};
-use support::*;
 
 /// A scene's particles, moved off their places, with masses that differ, and
 /// tabulated; nodes with m_I and p_I.

@@ -1,12 +1,10 @@
 //! The matrix: every basis with every integrator and both mass matrices on the
 //! Dyka and Ingel bar, its histories pinned and its errors bounded.
 
-mod support;
-
+use crate::support::*;
 use lme_mpm::run::Outcome;
 use lme_mpm::summary::lines;
 use std::fmt::Write;
-use support::*;
 
 /// Both mass matrices, each with a Courant number at which all schemes with all
 /// bases are stable.

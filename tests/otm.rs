@@ -1,8 +1,7 @@
 //! OTM: what its nodes keep, what its particles see, and the bar.
 #![allow(non_snake_case)]
 
-mod support;
-
+use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::basis::Basis;
 use lme_mpm::basis::Scratch;
@@ -20,7 +19,6 @@ use lme_mpm::scene::Scene;
 use lme_mpm::time;
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector1, Vector2};
 use std::fmt::Write;
-use support::*;
 
 const DYKA_OTM: &str = include_str!("../data/scenes/dyka-otm.toml");
 
@@ -204,7 +202,7 @@ fn otm_energy_under_gravity() {
     let outcome = finished(&scene);
     let balance = value(&scene, &outcome, "energy_balance_largest");
     assert!(balance < 1e-4, "{balance}");
-    let scene = support::scene(GRAVITY, &sets[..3]);
+    let scene = crate::support::scene(GRAVITY, &sets[..3]);
     let outcome = finished(&scene);
     assert!(value(&scene, &outcome, "displacement_end_rms_relative") < 1e-3);
     let v = value(&scene, &outcome, "velocity_field_rms_relative");

@@ -3,15 +3,13 @@
 //!
 //! Where there is no python3 nothing is checked; where CI runs, it must be there.
 
-mod support;
-
+use crate::support::*;
 use lme_mpm::check::{self, Report, Tolerance, compare};
 use lme_mpm::trace::{self, Entry};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use support::*;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -6,8 +6,7 @@
 //! the command in the README and give the cause of each difference in the
 //! commit message.
 
-mod support;
-
+use crate::support::*;
 use lme_mpm::exact::Exact;
 use lme_mpm::figure;
 use lme_mpm::history::shortest;
@@ -15,7 +14,6 @@ use lme_mpm::run::Outcome;
 use lme_mpm::scene::Scene;
 use lme_mpm::summary;
 use std::fmt::Write;
-use support::*;
 
 /// Errors of the bar by basis, with energy and cost beside them. Whatever the
 /// basis, the errors stay below those of a run that is merely stable, v ≤ 0.25

@@ -1,14 +1,12 @@
 //! The largest stable time step: predicted against closed forms and against
 //! marching.
 
-mod support;
-
+use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::fault::Breakdown;
 use lme_mpm::scene::Scene;
 use lme_mpm::study::stability::{grows, measured, predicted};
 use std::fmt::Write;
-use support::*;
 
 /// c Δt / h of a limit (s).
 fn courant(scene: &Scene, limit: f64) -> f64 {

@@ -1,7 +1,6 @@
 //! The studies: their configurations, their logs, and what they find on the bar.
 
-mod support;
-
+use crate::support::*;
 use lme_mpm::fault::Fault;
 use lme_mpm::figure;
 use lme_mpm::scene::{DYKA, Scene};
@@ -15,7 +14,6 @@ use lme_mpm::study::trade::{
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
-use support::*;
 
 fn dyka_template() -> Template {
     Template::parse(Path::new("dyka.toml"), DYKA).unwrap()
@@ -218,7 +216,7 @@ fn trade_takes_all_probes_and_loads() {
     let scene = template.scene(&one).unwrap();
     assert_eq!(scene.probes.len(), 3);
     let outcome = finished(&scene);
-    let of = |name: &str| support::value(&scene, &outcome, name);
+    let of = |name: &str| crate::support::value(&scene, &outcome, name);
     let (end, middle) =
         (of("displacement_end_rms_relative"), of("displacement_middle_rms_relative"));
     let mean = f64::sqrt(0.5 * (end * end + middle * middle));
@@ -312,7 +310,7 @@ fn gamma_from_end_to_end() {
         row.values.as_ref().unwrap()[column]
     };
     let linear = dyka(&[]);
-    let error = support::value(&linear, &finished(&linear), "velocity_end_rms_relative");
+    let error = crate::support::value(&linear, &finished(&linear), "velocity_end_rms_relative");
     let end = value("mpm lumped", 50.0, "velocity");
     assert!((end / error - 1.0).abs() < 1e-9, "{end} and {error}");
     let best = gamma::GAMMAS

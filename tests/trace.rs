@@ -1,14 +1,12 @@
 //! Traces, and their comparison.
 
-mod support;
-
+use crate::support::*;
 use lme_mpm::check::{self, Tolerance, compare, ulps};
 use lme_mpm::fault::{Fault, Moment};
 use lme_mpm::model::Model;
 use lme_mpm::scene::Scene;
 use lme_mpm::time;
 use lme_mpm::trace::{self, Entry, hex, number, trace_in};
-use support::*;
 
 const USUAL: Tolerance = Tolerance { relative: 1e-9, absolute: 1e-12 };
 

@@ -1,5 +1,4 @@
 //! What several tests share: scenes with changes, runs, and orders.
-#![allow(dead_code)] // each test file is its own crate and uses a part of this
 
 use lme_mpm::continuum::state::State;
 use lme_mpm::cost::Cost;
