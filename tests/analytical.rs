@@ -3,8 +3,11 @@
 
 use crate::support::*;
 use approx::assert_relative_eq;
+use lme_mpm::exact::Exact;
 use lme_mpm::exact::riemann::{Bar, End, Patch, coupling, eigenvectors, eigenvectors_inverse};
-use lme_mpm::measure::rms;
+use lme_mpm::fault::Fault;
+use lme_mpm::measure::{observed_order, rms};
+use lme_mpm::scene::Scene;
 use lme_mpm::summary::{Scales, lines};
 use nalgebra::{Matrix2, Vector2};
 
@@ -202,6 +205,52 @@ fn rms_has_its_square() {
     // Errors of opposite sign do not cancel, as they would without it.
     assert_eq!(rms([(1.0, 0.0), (-1.0, 0.0)]), 1.0);
     assert_eq!(rms([]), 0.0);
+}
+
+/// The line through ln error over ln h, and Student's interval of its slope, worked by
+/// hand: three points 0, 2, 3 and four points 0, 2, 3, 5 over 0, 1, 2, 3.
+#[test]
+fn observed_order_is_the_least_squares_line() {
+    let of = |y: &[f64]| {
+        let h: Vec<f64> = (0..y.len()).map(|n| libm::exp(n as f64)).collect();
+        let error: Vec<f64> = y.iter().map(|y| libm::exp(*y)).collect();
+        observed_order(&h, &error)
+    };
+    let three = of(&[0.0, 2.0, 3.0]);
+    assert_relative_eq!(three.slope, 1.5, max_relative = 1e-14);
+    // Residuals −1/6, 1/3, −1/6; Σ (x − 1)² = 2; one degree of freedom.
+    assert_relative_eq!(three.half_width, 12.706 * (1.0_f64 / 12.0).sqrt(), max_relative = 1e-12);
+    let four = of(&[0.0, 2.0, 3.0, 5.0]);
+    assert_relative_eq!(four.slope, 1.6, max_relative = 1e-14);
+    // Residuals ∓0.1, ±0.3; Σ (x − 1.5)² = 5; two degrees of freedom.
+    assert_relative_eq!(four.half_width, 4.303 * 0.02_f64.sqrt(), max_relative = 1e-12);
+    assert!(four.contains(1.6) && four.contains(2.2) && four.contains(1.0));
+    assert!(!four.contains(2.21) && !four.contains(0.99));
+    assert_eq!(four.to_string(), "1.6000 ± 0.6085");
+    // Beyond the table of Student's t there is no interval, and it contains nothing.
+    assert!(!of(&[0.0; 13]).contains(0.0));
+}
+
+/// How long a solution can be trusted, and for which scenes there is none.
+#[test]
+fn exact_says_until_when() {
+    let latest = |scene: &Scene| Exact::of(scene).unwrap().latest();
+    let transit = transit();
+    for (scene, expected) in [
+        (dyka(&[]), 2.0_f64.powi(50) * transit),
+        (dyka(&["traction.right=1"]), 1e4 * transit),
+        (dyka(&["body_force.acceleration=1"]), 1e4 * transit),
+        (dyka(&["initial_velocity=[]", "vibration={ mode = 1, velocity = 1 }"]), 1e4 * transit),
+    ] {
+        assert_relative_eq!(latest(&scene), expected, max_relative = 1e-14);
+    }
+    // The first mode between a fixed and a free end: k = π / 2L.
+    let moving = scene(MANUFACTURED, &[]);
+    let Ok(Exact::Manufactured(solution)) = Exact::of(&moving) else { panic!("{moving:?}") };
+    let expected = 1e4 / (solution.c * solution.mode.k);
+    assert_relative_eq!(latest(&moving), expected, max_relative = 1e-14);
+    let error = Exact::of(&scene(DISCS, &[])).unwrap_err();
+    assert!(matches!(error, Fault::NoExact { .. }), "{error}");
 }
 
 /// (t, v, u) of one particle at x0 = ½ in one cell of length 1, fixed on the

@@ -404,7 +404,7 @@ fn extremes_of_memory() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(same_every_time(400))]
 
     /// GOAL: no scene file makes the program panic.
     /// SETUP: shipped scenes with bytes replaced, cut off, or doubled at random.

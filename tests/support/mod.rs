@@ -8,6 +8,7 @@ use lme_mpm::model::Model;
 use lme_mpm::run::{Outcome, run};
 use lme_mpm::scene::{DYKA, Scene};
 use lme_mpm::time;
+use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 
 pub const FREE_FLIGHT: &str = include_str!("../../data/scenes/free-flight.toml");
 pub const VIBRATION: &str = include_str!("../../data/scenes/vibration.toml");
@@ -126,3 +127,9 @@ pub const SCHEMES: [(&str, &[&str]); 7] = [
     ("corrected euler", &["time.integrator=corrected-euler"]),
     ("generalized-α (0.8)", &["time.integrator=generalized-alpha", "time.rho_b=0.8"]),
 ];
+
+/// Random cases, the same ones in every run.
+pub fn same_every_time(cases: u32) -> ProptestConfig {
+    let rng_seed = RngSeed::Fixed(31);
+    ProptestConfig { cases, failure_persistence: None, rng_seed, ..ProptestConfig::default() }
+}
