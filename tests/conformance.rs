@@ -9,7 +9,7 @@ use lme_mpm::basis::{Scratch, tabulate};
 use lme_mpm::continuum::law::{self, LinearElastic};
 use lme_mpm::continuum::shape::Shape;
 use lme_mpm::cost::Cost;
-use lme_mpm::exact::Exact;
+use lme_mpm::exact::{Exact, Fields};
 use lme_mpm::measure::rms;
 use lme_mpm::model::Model;
 use lme_mpm::scene::{DYKA, Scene};
@@ -138,20 +138,18 @@ fn exact_values() -> String {
             places.push((x, tau * transit()));
         }
     }
+    let fields: Vec<Fields> = places.iter().map(|(x, t)| exact.at(*x, *t)).collect();
     let mut kernel = Kernel::default();
-    let fields = |(x, t): &(f64, f64)| exact.at(*x, *t);
-    let columns: [(usize, &'static str, &dyn Fn(&(f64, f64)) -> f64); 5] = [
-        (0, "x", &|place| place.0),
-        (0, "t", &|place| place.1),
-        (1, "v", &|place| fields(place).velocity),
-        (1, "sigma", &|place| fields(place).stress),
-        (1, "u", &|place| fields(place).displacement),
-    ];
-    for (step, symbol, value) in columns {
-        for (n, place) in places.iter().enumerate() {
-            kernel.push(0, step, symbol, n, &[value(place)]);
+    let mut column = |step: usize, symbol: &'static str, values: Vec<f64>| {
+        for (n, value) in values.into_iter().enumerate() {
+            kernel.push(0, step, symbol, n, &[value]);
         }
-    }
+    };
+    column(0, "x", places.iter().map(|place| place.0).collect());
+    column(0, "t", places.iter().map(|place| place.1).collect());
+    column(1, "v", fields.iter().map(|fields| fields.velocity).collect());
+    column(1, "sigma", fields.iter().map(|fields| fields.stress).collect());
+    column(1, "u", fields.iter().map(|fields| fields.displacement).collect());
     kernel.text()
 }
 

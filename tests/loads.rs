@@ -373,6 +373,15 @@ fn loads_undeclared_are_uncomputed() {
     assert_eq!((bodies, tractions), (0, steps + 1));
     let (_, _, factorizations, solves, steps) = counts(&dyka(&["mass=consistent"]));
     assert_eq!((factorizations, solves), (steps + 1, 2 * (steps + 1)));
+    // Generalized-α looks for accelerations at the start only under loads.
+    let alpha = "time.integrator=generalized-alpha";
+    for (sets, extra) in [
+        (&[alpha, "time.rho_b=0.8"][..], 0),
+        (&[alpha, "time.rho_b=0.8", "body_force.acceleration=1"], 80),
+    ] {
+        let cost = finished(&dyka(sets)).cost;
+        assert_eq!(cost.basis_evaluations, 80 * cost.steps + extra);
+    }
 }
 
 /// The manufactured motion across ten cells to each side: what the linear basis

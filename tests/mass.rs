@@ -3,16 +3,18 @@
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::basis::tabulate;
+use lme_mpm::basis::{Basis, Scratch, tabulate};
 use lme_mpm::continuum::mass::ConsistentMass;
-use lme_mpm::continuum::state::State;
+use lme_mpm::continuum::shape::Shape;
+use lme_mpm::continuum::state::{Nodes, Particles, State};
 use lme_mpm::continuum::sums;
 use lme_mpm::cost::Cost;
 use lme_mpm::fault::Breakdown;
+use lme_mpm::grid::Grid;
 use lme_mpm::model::Model;
 use lme_mpm::run::run;
 use lme_mpm::scene::Scene;
-use nalgebra::{DMatrix, DVector, SVector, Vector2};
+use nalgebra::{DMatrix, DVector, SVector, Vector1, Vector2};
 
 /// A scene's particles, moved off their places, with masses that differ, and
 /// tabulated; nodes with m_I and p_I.
@@ -182,6 +184,24 @@ fn mass_singular_is_named() {
     assert!(text.contains("singular") && text.contains("mass = \"lumped\""), "{text}");
     // Two particles in each cell determine them.
     run(&dyka(&["mass=consistent", "boundary.left=free", "time.cfl=0.3"]), &mut |_| {}).unwrap();
+}
+
+/// One particle between two nodes has a singular matrix, of rank one, unless one of the
+/// two is light: with N = 1/4 it is not yet, one bit further it is.
+#[test]
+fn mass_is_light_below_a_quarter() {
+    let assembled = |x: f64| {
+        let grid = Grid::over([1.0], [1], [[0, 0]]);
+        let mut particle = Particles::at_rest(vec![Vector1::new(x)], 1.0);
+        particle.m = vec![1.0];
+        let (mut shape, mut node) = (Shape::blank(1), Nodes::<1>::blank(2));
+        let (scratch, cost) = (&mut Scratch::default(), &mut Cost::default());
+        tabulate(&mut shape, scratch, cost, &Basis::Linear, &grid, &particle.x).unwrap();
+        sums::lumped_mass(&mut node, &particle, &shape);
+        ConsistentMass::blank(2, &[]).assemble(&particle, &shape, &node.m, cost)
+    };
+    assert!(assembled(0.25).is_err());
+    assert!(assembled(0.25 - f64::EPSILON / 4.0).is_ok());
 }
 
 /// A particle that has passed a node by ε gives it the mass ε m_p. It is light,

@@ -64,6 +64,16 @@ fn scalars(list: &[Vector1<f64>]) -> Vec<f64> {
     list.iter().map(|x| x[0]).collect()
 }
 
+/// What is counted, and what is empty.
+#[test]
+fn containers_know_their_size() {
+    let (particle, node, shape) = setup();
+    assert_eq!((particle.len(), node.len(), shape.len()), (3, 3, 6));
+    assert!(!particle.is_empty() && !node.is_empty() && !shape.is_empty());
+    assert!(Particles::<1>::at_rest(Vec::new(), 1.0).is_empty());
+    assert!(Nodes::<1>::blank(0).is_empty() && Shape::<1>::blank(0).is_empty());
+}
+
 /// (27) (28): p_I/m_I = 0, 0.2, −2 and f_I/m_I = 0, −56/15, 1 reach the particles
 /// through N.
 #[test]

@@ -119,19 +119,13 @@ impl<const D: usize> ConsistentMass<D> {
         for (I, p, N_Ip, _) in shape.pairs() {
             for (J, N_Jp, _) in shape.of(p) {
                 let column = if self.light[I] || self.light[J] { I } else { J };
-                let Some(k) = self.at(I, column) else { return false };
+                let Some(k) = place(&self.pattern, I, column) else { return false };
                 self.values[k] += N_Ip * particle.m[p] * N_Jp;
             }
         }
         true
     }
     // ANCHOR_END: consistent_mass
-
-    /// Where m_IJ stands among the values.
-    fn at(&self, I: usize, J: usize) -> Option<usize> {
-        let offsets = self.pattern.major_offsets();
-        self.pattern.lane(J).binary_search(&I).ok().map(|n| offsets[J] + n)
-    }
 
     /// The pattern of this table of shape functions; the factors go with the
     /// old one.
@@ -183,8 +177,7 @@ impl<const D: usize> ConsistentMass<D> {
         .map_err(|_| Singular)?;
         let factor = system.factor.insert(factor);
         for J in 0..m.len() {
-            let diagonal = (offsets[J]..offsets[J + 1]).find(|k| rows[*k] == J);
-            let entry = diagonal.map_or(0.0, |k| self.held[k]);
+            let entry = place(&self.pattern, J, J).map_or(0.0, |k| self.held[k]);
             let pivot = factor.l().col(J).values()[0];
             if pivot * pivot < SINGULAR * entry {
                 return Err(Singular);
@@ -215,4 +208,9 @@ impl<const D: usize> ConsistentMass<D> {
         cost.solves += D as u64;
     }
     // ANCHOR_END: spread
+}
+
+/// Where m_IJ stands among the values of a matrix with this pattern.
+fn place(pattern: &SparsityPattern, I: usize, J: usize) -> Option<usize> {
+    pattern.lane(J).binary_search(&I).ok().map(|n| pattern.major_offsets()[J] + n)
 }
