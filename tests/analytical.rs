@@ -3,8 +3,8 @@
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::exact::Exact;
 use lme_mpm::exact::riemann::{Bar, End, Patch, coupling, eigenvectors, eigenvectors_inverse};
+use lme_mpm::exact::{Exact, Fields};
 use lme_mpm::fault::Fault;
 use lme_mpm::measure::{observed_order, rms};
 use lme_mpm::scene::Scene;
@@ -205,6 +205,23 @@ fn rms_has_its_square() {
     // Errors of opposite sign do not cancel, as they would without it.
     assert_eq!(rms([(1.0, 0.0), (-1.0, 0.0)]), 1.0);
     assert_eq!(rms([]), 0.0);
+}
+
+/// A zero that comes from two parts is +0, so that no file has a −0.
+#[test]
+fn riemann_zeros_have_no_sign() {
+    let bar = dyka_bar();
+    let mut zeros = 0;
+    for n in 0..400 {
+        for x in [0.0, 0.02, 0.1, L] {
+            let Fields { velocity, stress, displacement } = bar.at(x, n as f64 * 1e-6);
+            for value in [velocity, stress, displacement].into_iter().filter(|x| *x == 0.0) {
+                assert!(value.is_sign_positive(), "{x}, {n}");
+                zeros += 1;
+            }
+        }
+    }
+    assert!(zeros > 1000, "{zeros}");
 }
 
 /// The line through ln error over ln h, and Student's interval of its slope, worked by

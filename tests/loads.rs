@@ -384,6 +384,18 @@ fn loads_undeclared_are_uncomputed() {
     }
 }
 
+/// A sudden traction on a free end acts there at once, σ = t and v = t/Z, and the front
+/// that it sends belongs to the loaded side.
+#[test]
+fn forced_front_belongs_to_the_loaded_side() {
+    let scene = dyka(&["initial_velocity=[]", "probe=[]", "traction.right=1e6"]);
+    let Exact::Linear { forced: Some(forced), .. } = Exact::of(&scene).unwrap() else { panic!() };
+    let at_once = forced.at(forced.length, 0.0);
+    assert_relative_eq!(at_once.stress, 1e6, max_relative = 1e-15);
+    assert_relative_eq!(at_once.velocity, 1e6 / forced.Z, max_relative = 1e-15);
+    assert_eq!((forced.at(0.5 * forced.length, 0.0).stress, at_once.displacement), (0.0, 0.0));
+}
+
 /// The manufactured motion across ten cells to each side: what the linear basis
 /// makes of it, and what local max-ent does. The bound is that of an independent
 /// prototype.

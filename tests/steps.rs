@@ -8,19 +8,24 @@
 //! | 1 | 0.75 | 4 | 3 | 16 | 0, 1 | 0.25, 0.75 |
 //! | 2 | 1.5 | 8 | −2 | −4 | 1, 2 | 0.5, 0.5 |
 
+#![allow(non_snake_case)]
+
+use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::basis::{Basis, Scratch, tabulate};
 use lme_mpm::continuum::law::LinearElastic;
 use lme_mpm::continuum::loads::{BodyForce, Loads, Traction};
 use lme_mpm::continuum::mass::ConsistentMass;
 use lme_mpm::continuum::shape::Shape;
-use lme_mpm::continuum::state::{Nodes, Particles};
+use lme_mpm::continuum::state::{Nodes, Particles, State};
+use lme_mpm::continuum::sums;
 use lme_mpm::cost::Cost;
 use lme_mpm::fault::{Breakdown, Moment};
 use lme_mpm::grid::Grid;
 use lme_mpm::model::Model;
 use lme_mpm::reading::StepEight;
 use lme_mpm::scene::{Mass, Method};
+use lme_mpm::time::generalized_alpha::{self, Parameters};
 use lme_mpm::time::{Integrator, steps};
 use nalgebra::Vector1;
 
@@ -254,6 +259,30 @@ fn step_9_correct() {
     assert_eq!(scalars(&particle.x), [0.25, 0.75, 1.5], "step 9 moves nothing");
 }
 
+/// A particle on node 1 sees node 2 with N = 0; that node has no mass, and no quotient
+/// of zeros comes from it.
+#[test]
+fn nodes_without_mass_divide_nothing() {
+    let grid = Grid::over([2.0], [2], [[0, 0]]);
+    let mut particle = Particles::at_rest(vec![Vector1::new(1.0)], 2.0);
+    (particle.m, particle.a) = (vec![2.0], vec![Vector1::new(3.0)]);
+    let (mut shape, mut node) = (Shape::blank(1), Nodes::blank(3));
+    let (scratch, cost) = (&mut Scratch::default(), &mut Cost::default());
+    tabulate(&mut shape, scratch, cost, &Basis::Linear, &grid, &particle.x).unwrap();
+    assert!(shape.of(0).any(|(I, N, _)| N == 0.0 && I != 1), "the point of this test");
+    sums::lumped_mass(&mut node, &particle, &shape);
+    assert_eq!(node.m, [0.0, 2.0, 0.0]);
+    steps::map_acceleration(&mut node, &mut None, &mut particle, &shape, &Vec::new(), cost);
+    assert_eq!(scalars(&node.a), [0.0, 3.0, 0.0]);
+    node.f[1] = Vector1::new(8.0);
+    let parameters = Parameters::new(0.8);
+    generalized_alpha::balance_accelerations(&mut node, &parameters);
+    let expected = (4.0 - 3.0 * parameters.alpha_m) / (1.0 - parameters.alpha_m);
+    assert_eq!(scalars(&node.a_next), [0.0, expected, 0.0]);
+    assert_eq!(sums::to_particle_divided(&node.f, &node, &shape, 0)[0], 4.0);
+    assert_eq!(sums::to_particle(&node.f, &node, &shape, 0)[0], 4.0);
+}
+
 /// A value that is not finite is named with its particle, step and time.
 #[test]
 fn step_ends_with_finite_values() {
@@ -270,4 +299,30 @@ fn step_ends_with_finite_values() {
         let fault = steps::finite(&broken, moment).unwrap_err();
         assert_eq!(fault, Breakdown::NotFinite { particle: p, moment, symbol });
     }
+    for rho in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let mut broken = particle.clone();
+        broken.rho[1] = rho;
+        let fault = steps::finite(&broken, moment).unwrap_err();
+        assert_eq!(fault, Breakdown::NotFinite { particle: 1, moment, symbol: "density" });
+    }
+}
+
+/// A place that is not a number is named so, and one beyond the grid as that.
+#[test]
+fn step_2_names_a_place_that_it_cannot_serve() {
+    let moment = Moment { step: 3, time: 0.75 };
+    let scene = dyka(&[]);
+    let model = Model::<1>::of(&scene);
+    let mut state = model.initial_state(&scene);
+    let mut tabulated = |x: f64| {
+        let State { particle, shape, scratch, .. } = &mut state;
+        particle.x[7] = Vector1::new(x);
+        steps::tabulate(shape, scratch, particle, &model, moment, &mut Cost::default())
+    };
+    assert_eq!(tabulated(0.05), Ok(()));
+    let not_finite = Breakdown::NotFinite { particle: 7, moment, symbol: "position" };
+    assert_eq!(tabulated(f64::NAN), Err(not_finite.clone()));
+    assert_eq!(tabulated(f64::INFINITY), Err(not_finite));
+    let left = Breakdown::LeftGrid { particle: 7, moment, position: vec![3.0] };
+    assert_eq!(tabulated(3.0), Err(left));
 }
