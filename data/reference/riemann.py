@@ -97,7 +97,7 @@ def main():
             bars.writerow([name, repr(L), repr(rho), repr(E), left, right, text])
             bar = Bar(L, rho, E, left, right, patches)
             transit = L / float(bar.c)
-            for longest in (1.0, 4.0, 40.0, 1e3, 1e4):
+            for longest in (1.0, 4.0, 40.0, 1e3, 1e4, 1e9, 2.0**44, 2.0**50):
                 written = 0
                 while written < 12:
                     x = rng.choice([0.0, L, rng.uniform(0.0, L), rng.uniform(0.0, L)])
