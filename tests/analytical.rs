@@ -207,6 +207,49 @@ fn rms_has_its_square() {
     assert_eq!(rms([]), 0.0);
 }
 
+/// Fronts are where v and σ jump, and only there: every pair of ends, patches that touch
+/// the ends or each other, at times with and without reflections behind them.
+#[test]
+fn riemann_fronts_are_the_jumps() {
+    let patches = [(0.0, 0.2, 3.0), (0.2, 0.35, 3.0), (0.35, 0.5, -1.0), (0.8, 1.0, 2.0)]
+        .map(|(from, to, velocity)| Patch { from, to, velocity })
+        .to_vec();
+    let (mut fronts, mut kept) = (0, 0);
+    for ends in [End::Fixed, End::Free].iter().flat_map(|a| [[*a, End::Fixed], [*a, End::Free]]) {
+        // All patches, and none at the ends.
+        for patches in [patches.clone(), patches[1..3].to_vec()] {
+            let bar = Bar { length: 1.0, density: 1.0, modulus: 1.0, ends, patches };
+            let differ = |a: f64, b: f64| {
+                let (a, b) = (bar.at(a, 0.0), bar.at(b, 0.0));
+                (a.velocity - b.velocity).abs() + (a.stress - b.stress).abs() > 0.1
+            };
+            assert!(!differ(0.21, 0.22) && differ(0.34, 0.36));
+            for t in [0.013, 0.07, 0.31, 0.77, 1.43, 2.9, 17.21] {
+                let at = |x: f64| (bar.at(x, t).velocity, bar.at(x, t).stress);
+                let jumps = |a: f64, b: f64| {
+                    let (a, b) = (at(a), at(b));
+                    (a.0 - b.0).abs() + (a.1 - b.1).abs() > 0.1
+                };
+                let found = bar.fronts(t);
+                for x in &found {
+                    assert!(jumps(x - 1e-9, x + 1e-9), "{ends:?}, t = {t}: no jump at {x}");
+                    fronts += 1;
+                }
+                // Between two fronts nothing changes.
+                let edges = [&[0.0][..], &found, &[1.0]].concat();
+                for pair in edges.windows(2).filter(|pair| pair[1] - pair[0] > 1e-8) {
+                    let inside = |s: f64| pair[0] + s * (pair[1] - pair[0]);
+                    for n in 1..20 {
+                        assert!(!jumps(inside(1e-3), inside(0.05 * n as f64)), "{ends:?}, {t}");
+                        kept += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(fronts > 200 && kept > 4000, "{fronts}, {kept}");
+}
+
 /// A zero that comes from two parts is +0, so that no file has a −0.
 #[test]
 fn riemann_zeros_have_no_sign() {

@@ -3,13 +3,14 @@
 #![allow(non_snake_case)]
 
 use crate::support::*;
+use approx::assert_relative_eq;
 use lme_mpm::basis::support::at as lme_at;
 use lme_mpm::basis::{Basis, Scratch, tabulate};
 use lme_mpm::continuum::shape::Shape;
 use lme_mpm::cost::Cost;
 use lme_mpm::figure;
 use lme_mpm::grid::Grid;
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector1};
 use std::collections::BTreeMap;
 
 fn rows(name: &str) -> Vec<Vec<String>> {
@@ -247,4 +248,20 @@ fn lme_jump_at_the_cutoff() {
         text += "\n";
     }
     approve("lme__cutoff_jump", &text);
+}
+
+/// Two nodes alone: N is linear, so λ follows from ln(N_1/N_0) = β(x² − (x − h)²) − λh.
+/// It is in 1/m, whatever the spacing.
+#[test]
+fn lme_multiplier_of_two_nodes() {
+    for h in [0.25, 1.0, 3.0] {
+        let (x, gamma) = (0.3 * h, 1.8);
+        let nodes = [Vector1::new(0.0), Vector1::new(h)];
+        let (values, lambda) = lme_at(&nodes, h, gamma, 0.0, &Vector1::new(x)).unwrap();
+        assert_relative_eq!(values[1].1, 0.3, max_relative = 1e-14);
+        assert_relative_eq!(values[1].2[0], 1.0 / h, max_relative = 1e-14);
+        let beta = gamma / (h * h);
+        let expected = (beta * (x * x - (x - h) * (x - h)) - libm::log(0.3 / 0.7)) / h;
+        assert_relative_eq!(lambda[0], expected, max_relative = 1e-13);
+    }
 }
