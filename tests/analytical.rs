@@ -231,6 +231,7 @@ fn riemann_fronts_are_the_jumps() {
                     (a.0 - b.0).abs() + (a.1 - b.1).abs() > 0.1
                 };
                 let found = bar.fronts(t);
+                assert!(found.windows(2).all(|pair| pair[1] - pair[0] > 1e-9), "{found:?}");
                 for x in &found {
                     assert!(jumps(x - 1e-9, x + 1e-9), "{ends:?}, t = {t}: no jump at {x}");
                     fronts += 1;

@@ -265,3 +265,45 @@ fn lme_multiplier_of_two_nodes() {
         assert_relative_eq!(lambda[0], expected, max_relative = 1e-13);
     }
 }
+
+/// A point 1e-100 h from the hull: μ is near −230 and exp(μ)^k leaves the range of
+/// numbers, so that weights cannot be made by multiplication there.
+#[test]
+fn lme_at_the_edge_of_the_numbers() {
+    let grid = Grid::over([8.0], [8], [[0, 0]]);
+    for x in [1e-60, 1e-100, 1e-150] {
+        let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
+        let basis = Basis::Lme { gamma: 0.8, cutoff: 1e-6 };
+        let points = [Vector1::new(x)];
+        let cost = &mut Cost::default();
+        tabulate(&mut shape, &mut scratch, cost, &basis, &grid, &points).unwrap();
+        let values: Vec<f64> = shape.of(0).map(|(_, N, _)| N).collect();
+        assert_relative_eq!(values[0], 1.0, max_relative = 1e-15);
+        assert_relative_eq!(values[1], x, max_relative = 1e-12);
+        assert!(values[2..].iter().all(|N| (0.0..1e-100).contains(N)), "{values:?}");
+    }
+}
+
+/// Exponentials are counted as they are evaluated. On a grid: seven for the table
+/// exp(−γk²), once, and one for each axis and evaluation; where that would leave the
+/// range of numbers, one for each node and evaluation.
+#[test]
+fn lme_counts_its_exponentials() {
+    let grid = Grid::over([4.0], [4], [[0, 0]]);
+    let counts = |gamma: f64| {
+        let (mut shape, mut scratch) = (Shape::<1>::blank(0), Scratch::default());
+        let mut cost = Cost::default();
+        let points = [Vector1::new(1.3), Vector1::new(2.6)];
+        let basis = Basis::Lme { gamma, cutoff: 0.0 };
+        tabulate(&mut shape, &mut scratch, &mut cost, &basis, &grid, &points).unwrap();
+        assert_eq!(shape.len(), 2 * 5, "every point sees every node");
+        (cost.exponentials, cost.newton_iterations)
+    };
+    let (exponentials, iterations) = counts(0.8);
+    assert!(iterations > 1);
+    assert_eq!(exponentials, 7 + iterations);
+    let (exponentials, iterations) = counts(50.0);
+    assert!(iterations > 1);
+    // Starts that are not near enough are evaluated without being iterations.
+    assert!(exponentials % 5 == 0 && exponentials >= 5 * iterations, "{exponentials}");
+}
