@@ -4,6 +4,7 @@
 
 use crate::support::*;
 use approx::assert_relative_eq;
+use lme_mpm::basis::lme::Failure;
 use lme_mpm::basis::support::at as lme_at;
 use lme_mpm::basis::{Basis, Scratch, tabulate};
 use lme_mpm::continuum::shape::Shape;
@@ -267,11 +268,12 @@ fn lme_multiplier_of_two_nodes() {
 }
 
 /// A point 1e-100 h from the hull: μ is near −230 and exp(μ)^k leaves the range of
-/// numbers, so that weights cannot be made by multiplication there.
+/// numbers, so that weights cannot be made by multiplication there. Closer than 1e-150 h
+/// is on it.
 #[test]
 fn lme_at_the_edge_of_the_numbers() {
     let grid = Grid::over([8.0], [8], [[0, 0]]);
-    for x in [1e-60, 1e-100, 1e-150] {
+    for x in [1e-60, 1e-100, 1e-150, 1e-151, 1e-200, 5e-324] {
         let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
         let basis = Basis::Lme { gamma: 0.8, cutoff: 1e-6 };
         let points = [Vector1::new(x)];
@@ -279,7 +281,8 @@ fn lme_at_the_edge_of_the_numbers() {
         tabulate(&mut shape, &mut scratch, cost, &basis, &grid, &points).unwrap();
         let values: Vec<f64> = shape.of(0).map(|(_, N, _)| N).collect();
         assert_relative_eq!(values[0], 1.0, max_relative = 1e-15);
-        assert_relative_eq!(values[1], x, max_relative = 1e-12);
+        let inner = if x < 1e-150 { 0.0 } else { x };
+        assert_relative_eq!(values[1], inner, max_relative = 1e-12);
         assert!(values[2..].iter().all(|N| (0.0..1e-100).contains(N)), "{values:?}");
     }
 }
@@ -306,4 +309,15 @@ fn lme_counts_its_exponentials() {
     assert!(iterations > 1);
     // Starts that are not near enough are evaluated without being iterations.
     assert!(exponentials % 5 == 0 && exponentials >= 5 * iterations, "{exponentials}");
+}
+
+/// One node alone spans nothing: no point is in its hull, not even its own place, where
+/// N would be 1 and ∇N undefined.
+#[test]
+fn lme_of_one_node_is_refused() {
+    for x in [0.0, 0.3] {
+        let nodes = [Vector1::new(0.0)];
+        let refused = lme_at(&nodes, 1.0, 1.8, 0.0, &Vector1::new(x)).unwrap_err();
+        assert!(matches!(refused, Failure::OutsideHull), "{refused:?}");
+    }
 }

@@ -89,9 +89,9 @@ impl<const D: usize> Lme<D> {
     }
 
     /// Adds a node to the support: (x − x_I)/h and (x_b − x_I)/h. A distance
-    /// along an axis below 1e-300 h is none: its square has no number.
+    /// along an axis below 1e-150 h is none: its square would have no number.
     pub fn push(&mut self, xi: SVector<f64, D>, offset: SVector<f64, D>) {
-        self.xi.push(xi.map(|xi| if libm::fabs(xi) < 1e-300 { 0.0 } else { xi }));
+        self.xi.push(xi.map(|xi| if libm::fabs(xi) < 1e-150 { 0.0 } else { xi }));
         self.offset.push(offset);
     }
 
