@@ -11,7 +11,7 @@ use lme_mpm::continuum::shape::Shape;
 use lme_mpm::cost::Cost;
 use lme_mpm::figure;
 use lme_mpm::grid::Grid;
-use nalgebra::{SVector, Vector1};
+use nalgebra::{SVector, Vector1, Vector2};
 use std::collections::BTreeMap;
 
 fn rows(name: &str) -> Vec<Vec<String>> {
@@ -319,5 +319,29 @@ fn lme_of_one_node_is_refused() {
         let nodes = [Vector1::new(0.0)];
         let refused = lme_at(&nodes, 1.0, 1.8, 0.0, &Vector1::new(x)).unwrap_err();
         assert!(matches!(refused, Failure::OutsideHull), "{refused:?}");
+    }
+}
+
+/// Inside the box of a triangle, and outside the triangle: named so. 1e-7 h inside a
+/// point is served. Nearer than 1e-8 h to the slanted side its distance is not known well
+/// enough, and it may be refused; never is it served wrongly.
+#[test]
+fn lme_beside_a_triangle() {
+    let nodes = [Vector2::new(0.0, 0.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)];
+    for gamma in [0.8, 4.0, 20.0] {
+        for s in [0.5 + 1e-9, 0.6, 0.9, 1.0] {
+            let outside = lme_at(&nodes, 1.0, gamma, 0.0, &Vector2::new(s, s));
+            assert_eq!(outside.unwrap_err(), Failure::OutsideHull, "γ = {gamma}, {s}");
+        }
+        let x = Vector2::new(0.5 - 1e-7, 0.5 - 1e-7);
+        let (values, _) = lme_at(&nodes, 1.0, gamma, 0.0, &x).unwrap();
+        for ((_, N, _), expected) in values.iter().zip([1.0 - x[0] - x[1], x[0], x[1]]) {
+            assert!((N - expected).abs() < 1e-15, "γ = {gamma}: {N}");
+        }
+        let x = Vector2::new(0.5 - 1e-10, 0.5 - 1e-10);
+        match lme_at(&nodes, 1.0, gamma, 0.0, &x) {
+            Ok((values, _)) => assert!((values[0].1 - 2e-10).abs() < 1e-15, "{values:?}"),
+            Err(refused) => assert!(matches!(refused, Failure::NotConverged { .. })),
+        }
     }
 }
