@@ -11,7 +11,7 @@ use lme_mpm::continuum::shape::Shape;
 use lme_mpm::cost::Cost;
 use lme_mpm::figure;
 use lme_mpm::grid::Grid;
-use nalgebra::{SVector, Vector1, Vector2};
+use nalgebra::{Matrix2, SVector, Vector1, Vector2};
 use std::collections::BTreeMap;
 
 fn rows(name: &str) -> Vec<Vec<String>> {
@@ -342,6 +342,34 @@ fn lme_beside_a_triangle() {
         match lme_at(&nodes, 1.0, gamma, 0.0, &x) {
             Ok((values, _)) => assert!((values[0].1 - 2e-10).abs() < 1e-15, "{values:?}"),
             Err(refused) => assert!(matches!(refused, Failure::NotConverged { .. })),
+        }
+    }
+}
+
+/// Points on a side of nodes in no order, whose next layer does not stand opposite to
+/// them: Σ ∇N = 0, Σ ξ ⊗ ∇N = 1, and ∇N is the limit of the differences from inside.
+#[test]
+fn lme_on_a_side_without_symmetry() {
+    let nodes =
+        [[0.0, 0.0], [0.0, 1.0], [0.0, 2.2], [0.7, 0.3], [0.7, 1.9], [1.6, 0.9], [1.5, 2.0]]
+            .map(|[x, y]| Vector2::new(x, y));
+    for gamma in [0.8, 1.8] {
+        for y in [0.35, 0.8, 1.0, 1.7] {
+            let x = Vector2::new(0.0, y);
+            let at = |x: Vector2<f64>| lme_at(&nodes, 1.0, gamma, 0.0, &x).unwrap().0;
+            let here = at(x);
+            let (mut slope, mut moment) = (Vector2::zeros(), Matrix2::zeros());
+            for (I, _, grad) in &here {
+                slope += grad;
+                moment += (nodes[*I] - x) * grad.transpose();
+            }
+            assert_relative_eq!(slope, Vector2::zeros(), epsilon = 1e-13);
+            assert_relative_eq!(moment, Matrix2::identity(), epsilon = 1e-13);
+            let step = 1e-6;
+            let inside = at(x + Vector2::new(step, 0.0));
+            for (a, b) in here.iter().zip(&inside) {
+                assert!((a.2[0] - (b.1 - a.1) / step).abs() < 1e-4, "γ = {gamma}, {y}: {a:?}");
+            }
         }
     }
 }

@@ -300,7 +300,7 @@ impl<const D: usize> Lme<D> {
             J += outer(&self.xi[*n], &self.xi[*n]) * *p;
         }
         fill_faces(&mut J, faces);
-        let inverse = J.try_inverse().ok_or(Failure::OutsideHull)?;
+        let mut inverse = J.try_inverse().ok_or(Failure::OutsideHull)?;
         self.p.clear();
         self.p.resize(self.xi.len(), 0.0);
         self.grad.clear();
@@ -316,6 +316,9 @@ impl<const D: usize> Lme<D> {
             self.shares.iter().for_each(|n| self.p[*n] *= S / (1.0 + S));
             self.p[node] = 1.0 / (1.0 + S);
             self.shares.push(node);
+            if S > 1e-150 {
+                inverse *= (1.0 + S) / S; // of the J of all shares together
+            }
         }
         for d in (0..D).filter(|d| faces[*d] != 0.0) {
             let in_layer = |xi: &SVector<f64, D>| {

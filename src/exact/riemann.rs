@@ -132,7 +132,7 @@ impl Bar {
         Fields {
             stress: phi[0] + 0.0,
             velocity: phi[1] + 0.0,
-            displacement: u / self.c() + periods * self.drift() + 0.0,
+            displacement: u / self.c() + periods * self.drift(),
         }
     }
     // ANCHOR_END: at
