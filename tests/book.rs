@@ -261,6 +261,31 @@ fn chapters_are_in_the_summary() {
     }
 }
 
+/// The mutants that survived are still in the code, each with its reason, and every
+/// module's sum is right. `data/mutants/score.py` makes the counts.
+#[test]
+fn surviving_mutants_are_explained() {
+    let mut survived: BTreeMap<String, usize> = BTreeMap::new();
+    for row in records("data/mutants/survivors.csv") {
+        let [file, code, mutant, reason] = row.try_into().unwrap();
+        let found = read(&file).lines().any(|line| line.trim() == code);
+        assert!(found, "{file} has no line `{code}`");
+        assert!(mutant.starts_with("replace ") || mutant.starts_with("delete "), "{mutant}");
+        assert!(reason.len() > 20, "{mutant}: {reason}");
+        let module = file.trim_start_matches("src/").split(['/', '.']).next().unwrap();
+        *survived.entry(module.to_string()).or_default() += 1;
+    }
+    let scores = records("data/mutants/scores.csv");
+    for row in &scores {
+        let count = |at: usize| row[at].parse::<usize>().unwrap();
+        assert_eq!(count(1), count(2) + count(3), "{row:?}");
+        // A line may hold the same mutant more than once.
+        let rows = survived.remove(&row[0]).unwrap_or(0);
+        assert!(rows <= count(3) && (rows > 0) == (count(3) > 0), "{row:?}");
+    }
+    assert!(survived.is_empty() && scores.len() == 6, "{survived:?}");
+}
+
 /// A directory of its own with the scenes, where commands may write.
 fn directory(name: &str) -> PathBuf {
     let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);

@@ -1,14 +1,14 @@
-"""Counts, module by module, how many mutants of the code the tests have found.
+"""Counts, module by module, how many mutants of the code are found.
 
     cargo install cargo-mutants
-    cargo mutants -o target/mutants/1
-    cargo mutants -o target/mutants/2 -F 'some of them, with other tests'
+    cargo mutants -o target/mutants/1 -- -- --skip stability::
+    cargo mutants -o target/mutants/1 --iterate
     python3 data/mutants/score.py target/mutants/*
 
-Each argument is a folder with `mutants.out` in it; a mutant that was found in one of
-them is found. Writes `scores.csv` beside this file. Survivors stand in
-`survivors.csv` with the reason; one that does not, or a row that is no survivor, is
-named, and nothing is written.
+Each argument is a folder with `mutants.out` in it. A mutant is found if in one of them
+a test failed, or never ended, or if it does not compile. Writes `scores.csv` beside
+this file. Survivors stand in `survivors.csv` with the reason; one that does not, a row
+that is no survivor, and a mutant that was not tried are named, and nothing is written.
 """
 import csv
 import pathlib
@@ -17,12 +17,10 @@ import sys
 
 home = pathlib.Path(__file__).parent
 root = home.parent.parent
-found = {}
+found, missed = set(), set()
 for folder in sys.argv[1:]:
-    for verdict in ("missed", "unviable", "timeout", "caught"):
-        file = pathlib.Path(folder) / "mutants.out" / f"{verdict}.txt"
-        for name in file.read_text().splitlines():
-            found.setdefault(name, set()).add(verdict)
+    for file in (pathlib.Path(folder) / "mutants.out").glob("*.txt"):
+        (missed if file.stem == "missed" else found).update(file.read_text().splitlines())
 
 
 def place(name):
@@ -40,19 +38,16 @@ scores, seen, faults = {}, set(), []
 for name in listed:
     module = pathlib.Path(name.split(":")[0]).relative_to("src").parts[0].removesuffix(".rs")
     score = scores.setdefault(module, {"mutants": 0, "found": 0, "survived": 0})
-    verdicts = found.get(name, set())
-    if verdicts & {"caught", "timeout"}:
+    score["mutants"] += 1
+    if name in found:
         score["found"] += 1
-    elif "unviable" in verdicts:
-        continue  # it does not compile
-    elif "missed" in verdicts:
+    elif name in missed:
         score["survived"] += 1
         seen.add(place(name))
         if place(name) not in explained:
             faults.append(f"survived without a reason: {name}")
     else:
         faults.append(f"not tried: {name}")
-    score["mutants"] += 1
 faults += [f"no survivor: {row}" for row in sorted(explained - seen)]
 if faults:
     sys.exit("\n".join(faults))
