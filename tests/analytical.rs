@@ -232,6 +232,14 @@ fn riemann_fronts_are_the_jumps() {
                 };
                 let found = bar.fronts(t);
                 assert!(found.windows(2).all(|pair| pair[1] - pair[0] > 1e-9), "{found:?}");
+                // In a unit 2^30 times as long every number is the same.
+                let long = 2.0_f64.powi(30);
+                let mut scaled = Bar { length: long, ..bar.clone() };
+                for patch in &mut scaled.patches {
+                    (patch.from, patch.to) = (patch.from * long, patch.to * long);
+                }
+                let expected: Vec<f64> = found.iter().map(|x| x * long).collect();
+                assert_eq!(scaled.fronts(t * long), expected);
                 for x in &found {
                     assert!(jumps(x - 1e-9, x + 1e-9), "{ends:?}, t = {t}: no jump at {x}");
                     fronts += 1;
@@ -249,6 +257,21 @@ fn riemann_fronts_are_the_jumps() {
         }
     }
     assert!(fronts > 200 && kept > 4000, "{fronts}, {kept}");
+}
+
+/// A free bar that is thrown as a whole flies on: v = V, σ = 0, u = V t at any time, also
+/// where the digits of ct that a number does not hold reach into another period.
+#[test]
+fn riemann_free_flight_to_the_latest_time() {
+    let patches = vec![Patch { from: 0.0, to: 2.5, velocity: 3.0 }];
+    let ends = [End::Free, End::Free];
+    let bar = Bar { length: 2.5, density: 1000.0, modulus: 7e6, ends, patches };
+    for n in 1..4000 {
+        let t = bar.latest() * n as f64 / 4000.3;
+        let fields = bar.at(2.5 * (n % 7) as f64 / 6.0, t);
+        assert_eq!((fields.velocity, fields.stress), (3.0, 0.0), "t = {t:e}");
+        assert_relative_eq!(fields.displacement, 3.0 * t, max_relative = 4e-15);
+    }
 }
 
 /// A zero that comes from two parts is +0, so that no file has a −0.

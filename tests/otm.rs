@@ -641,3 +641,69 @@ fn otm_with_linear_functions_is_exact_at_courant_one() {
     let error = value(&scene, &outcome, "stress_three_quarter_rms_relative");
     assert!(error < 0.02, "{error}");
 }
+
+/// Boxes hold every node within reach and few others, wherever the nodes stand.
+#[test]
+fn otm_boxes_hold_all_within_reach() {
+    for shift in [[3.0, -7.0], [-40.0, 5.5], [0.0, 0.0]] {
+        let nodes: Vec<Vector2<f64>> = (0..144)
+            .map(|n| Vector2::new((n % 12) as f64 + shift[0], (n / 12) as f64 + shift[1]))
+            .collect();
+        let mut bins = Bins::<2>::default();
+        bins.sort(&nodes, &Vector2::new(1.0, 1.0), 1.5);
+        for at in [[0.2, 0.3], [5.7, 6.1], [10.9, 0.4], [3.5, 10.99]] {
+            let x = Vector2::new(at[0] + shift[0], at[1] + shift[1]);
+            let near: Vec<usize> = bins.near(&x, 1.5).collect();
+            assert!(near.len() <= 36, "{shift:?}, {at:?}: {}", near.len());
+            for (n, node) in nodes.iter().enumerate() {
+                assert!((node - x).norm() > 1.5 || near.contains(&n), "{shift:?}, {at:?}: {n}");
+            }
+        }
+    }
+}
+
+/// A table of nodes in 1D with the spacing 1, or its refusal, with its cost.
+fn row(basis: &Basis, nodes: &[f64], x: &[f64]) -> (Option<Vec<f64>>, Cost) {
+    let [nodes, x] =
+        [nodes, x].map(|list| list.iter().map(|x| Vector1::new(*x)).collect::<Vec<_>>());
+    let (mut shape, mut scratch, mut cost) = (Shape::blank(0), Scratch::default(), Cost::default());
+    let h = Vector1::new(1.0);
+    let made = tabulate(&mut shape, &mut scratch, &mut cost, basis, &h, &nodes, &x);
+    (made.ok().map(|()| shape.pairs().map(|(_, _, N, _)| N).collect()), cost)
+}
+
+/// The search widens by half until the point is enclosed, and stops when there are no
+/// more nodes to be seen.
+#[test]
+fn otm_search_widens_step_by_step() {
+    let basis = Basis::Lme { gamma: 4.0, cutoff: 1e-6 };
+    // R = 1.86, then 2.79, which sees 0 and 5 but not −0.6.
+    let (found, _) = row(&basis, &[-0.6, 0.0, 5.0], &[2.4]);
+    let found = found.unwrap();
+    assert_eq!(found.len(), 2);
+    assert_relative_eq!(found[1], 0.48, max_relative = 1e-13);
+    // Outside: seen one of two, then both, and then refused.
+    let (refused, cost) = row(&basis, &[0.0, 1.0], &[-1.0]);
+    assert_eq!((refused, cost.candidates), (None, 4));
+}
+
+/// What two points cost is what each of them costs.
+#[test]
+fn otm_costs_add_up() {
+    let basis = Basis::Lme { gamma: 1.8, cutoff: 1e-6 };
+    let nodes = [0.0, 0.9, 2.1, 3.0, 4.2];
+    let of = |x: &[f64]| row(&basis, &nodes, x).1;
+    let (one, other, both) = (of(&[1.3]), of(&[2.6]), of(&[1.3, 2.6]));
+    assert!(one.exponentials > 4 && one.newton_iterations > 1);
+    assert_eq!(both.exponentials, one.exponentials + other.exponentials);
+    assert_eq!(both.newton_iterations, one.newton_iterations + other.newton_iterations);
+}
+
+/// The linear functions of OTM at its first and last node, and beyond.
+#[test]
+fn otm_linear_at_the_ends() {
+    let at = |x: f64| row(&Basis::Linear, &[0.0, 1.0, 2.5], &[x]).0;
+    assert_eq!(at(0.0), Some(vec![1.0, 0.0]));
+    assert_eq!(at(2.5), Some(vec![0.0, 1.0]));
+    assert_eq!((at(-1e-9), at(2.5 + 1e-9)), (None, None));
+}
