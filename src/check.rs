@@ -138,27 +138,27 @@ pub fn compare(
     let mut reference = reference.to_vec();
     for entry in theirs {
         let key = key(entry, entry.symbol);
-        let is_known = known.contains_key(&key);
-        let place = |r: &Entry| (r.k, r.step, r.symbol) == (entry.k, entry.step, entry.symbol);
-        let table =
-            (!is_known && entry.node.is_some()).then(|| reference.iter().position(place)).flatten();
-        if let Some(at) = table {
-            // A node that the particle does not see: its function is 0 there.
-            reference.insert(at, Entry { value: 0.0, ..entry.clone() });
-        } else if !is_known {
-            return Err(Fault::Argument {
-                argument: "theirs",
-                problem: format!(
-                    "k = {}, step {}: {} has index {}{}, component {}, which the reference has not",
-                    entry.k,
-                    entry.step,
-                    entry.symbol,
-                    entry.index,
-                    entry.node.map_or(String::new(), |node| format!(", node {node}")),
-                    entry.component
-                ),
-                allowed: "a part of what the reference has",
-            });
+        if !known.contains_key(&key) {
+            let place = |r: &Entry| (r.k, r.step, r.symbol) == (entry.k, entry.step, entry.symbol);
+            match reference.iter().position(place).filter(|_| entry.node.is_some()) {
+                // A node that the particle does not see: its function is 0 there.
+                Some(at) => reference.insert(at, Entry { value: 0.0, ..entry.clone() }),
+                None => {
+                    return Err(Fault::Argument {
+                        argument: "theirs",
+                        problem: format!(
+                            "k = {}, step {}: {} has index {}{}, component {}, which the reference has not",
+                            entry.k,
+                            entry.step,
+                            entry.symbol,
+                            entry.index,
+                            entry.node.map_or(String::new(), |node| format!(", node {node}")),
+                            entry.component
+                        ),
+                        allowed: "a part of what the reference has",
+                    });
+                }
+            }
         }
         own.insert(key, entry.value);
     }

@@ -95,6 +95,13 @@ impl Recorder {
         self.entries.push(Entry { k, step, symbol, index, node: None, component, value });
     }
 
+    /// The components of a vector, or of a tensor by rows.
+    pub fn components(&mut self, symbol: &'static str, index: usize, values: &[f64]) {
+        for (component, value) in values.iter().enumerate() {
+            self.number(symbol, index, component, *value);
+        }
+    }
+
     fn numbers(&mut self, symbol: &'static str, list: &[f64]) {
         for (index, value) in list.iter().enumerate() {
             self.number(symbol, index, 0, *value);
@@ -103,9 +110,7 @@ impl Recorder {
 
     fn vectors<const D: usize>(&mut self, symbol: &'static str, list: &[SVector<f64, D>]) {
         for (index, vector) in list.iter().enumerate() {
-            for (i, value) in vector.iter().enumerate() {
-                self.number(symbol, index, i, *value);
-            }
+            self.components(symbol, index, vector.as_slice());
         }
     }
 

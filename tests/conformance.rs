@@ -47,28 +47,13 @@ struct Piece {
     text: String,
 }
 
-/// Entries of a file of level 0: what is given in step 0, what a port makes of it after.
-#[derive(Default)]
-struct Kernel(Vec<Entry>);
-
-impl Kernel {
-    fn push(&mut self, k: usize, step: usize, symbol: &'static str, index: usize, values: &[f64]) {
-        for (component, value) in values.iter().copied().enumerate() {
-            self.0.push(Entry { k, step, symbol, index, node: None, component, value });
-        }
-    }
-
-    fn text(&self) -> String {
-        in_both(&self.0)
-    }
-}
-
 /// The bar that level 0 tabulates shape functions on: cells of a quarter of a metre, so
 /// that places in cells are exact and a forgotten h shows.
 const QUARTERS: [&str; 5] =
     ["body.length=2", "grid.cells=8", "time.end=1", "initial_velocity=[]", "probe=[]"];
 
-/// A basis at points inside a cell, on nodes, beside them, near the end.
+/// What level 0 gives stands in step 0, what a port makes of it after: a basis at points
+/// inside a cell, on nodes, beside them, near the end.
 fn basis_values(sets: &[&str]) -> String {
     let model = Model::<1>::of(&dyka(&[sets, &QUARTERS].concat()));
     let tabulated = |points: &[Vector1<f64>]| {
@@ -82,38 +67,36 @@ fn basis_values(sets: &[&str]) -> String {
     // uGIMP's particles must not reach beyond the grid.
     let places: Vec<_> = places.into_iter().filter(|x| tabulated(&[*x]).is_ok()).collect();
     let (shape, lambda) = tabulated(&places).unwrap();
-    let mut kernel = Kernel::default();
+    let mut kernel = Recorder::default();
     for (p, x) in places.iter().enumerate() {
-        kernel.push(0, 0, "x_p", p, x.as_slice());
+        kernel.at(0, 0).components("x_p", p, x.as_slice());
     }
-    let mut recorder = Recorder::default();
-    recorder.at(0, 2).shapes(&shape, &lambda, &model.grid.h);
-    kernel.0.extend(recorder.entries);
-    kernel.text()
+    kernel.at(0, 2).shapes(&shape, &lambda, &model.grid.h);
+    in_both(&kernel.entries)
 }
 
 fn law_values() -> String {
-    let mut kernel = Kernel::default();
+    let mut kernel = Recorder::default();
     let mut k = 0;
     for (E, nu) in [(200e9, 0.0), (1000.0, 0.3), (7.0, -0.4)] {
         for [xx, xy, yy] in [[1e-3, 2e-4, -4e-4], [0.0, 0.1, 0.0], [-0.2, 0.0, 0.3]] {
             let d_eps = Matrix2::new(xx, xy, xy, yy);
             let law = LinearElastic::new(E, nu);
             let sigma = law.stress_increment(&d_eps);
-            kernel.push(k, 0, "E", 0, &[E]);
-            kernel.push(k, 0, "nu", 0, &[nu]);
-            kernel.push(k, 0, "d_eps_p", 0, d_eps.as_slice());
-            kernel.push(k, 6, "rho_p", 0, &[law::density(1.0, &d_eps).unwrap()]);
-            kernel.push(k, 6, "sigma_p", 0, sigma.as_slice());
-            kernel.push(k, 6, "W_p", 0, &[law.energy_density(&sigma)]);
+            kernel.at(k, 0).components("E", 0, &[E]);
+            kernel.at(k, 0).components("nu", 0, &[nu]);
+            kernel.at(k, 0).components("d_eps_p", 0, d_eps.as_slice());
+            kernel.at(k, 6).components("rho_p", 0, &[law::density(1.0, &d_eps).unwrap()]);
+            kernel.at(k, 6).components("sigma_p", 0, sigma.as_slice());
+            kernel.at(k, 6).components("W_p", 0, &[law.energy_density(&sigma)]);
             k += 1;
         }
     }
-    kernel.text()
+    in_both(&kernel.entries)
 }
 
 fn measure_values() -> String {
-    let mut kernel = Kernel::default();
+    let mut kernel = Recorder::default();
     let cases: [(&[f64], &[f64]); 3] = [
         (&[3.0, 1.0], &[0.0, 5.0]),
         (&[1.0, -1.0], &[0.0, 0.0]),
@@ -121,13 +104,13 @@ fn measure_values() -> String {
     ];
     for (k, (computed, exact)) in cases.into_iter().enumerate() {
         for (n, (phi, phi_exact)) in computed.iter().zip(exact).enumerate() {
-            kernel.push(k, 0, "phi", n, &[*phi]);
-            kernel.push(k, 0, "phi_exact", n, &[*phi_exact]);
+            kernel.at(k, 0).components("phi", n, &[*phi]);
+            kernel.at(k, 0).components("phi_exact", n, &[*phi_exact]);
         }
         let pairs = computed.iter().copied().zip(exact.iter().copied());
-        kernel.push(k, 1, "rms", 0, &[rms(pairs)]);
+        kernel.at(k, 1).components("rms", 0, &[rms(pairs)]);
     }
-    kernel.text()
+    in_both(&kernel.entries)
 }
 
 fn exact_values() -> String {
@@ -139,10 +122,10 @@ fn exact_values() -> String {
         }
     }
     let fields: Vec<Fields> = places.iter().map(|(x, t)| exact.at(*x, *t)).collect();
-    let mut kernel = Kernel::default();
+    let mut kernel = Recorder::default();
     let mut column = |step: usize, symbol: &'static str, values: Vec<f64>| {
         for (n, value) in values.into_iter().enumerate() {
-            kernel.push(0, step, symbol, n, &[value]);
+            kernel.at(0, step).components(symbol, n, &[value]);
         }
     };
     column(0, "x", places.iter().map(|place| place.0).collect());
@@ -150,7 +133,7 @@ fn exact_values() -> String {
     column(1, "v", fields.iter().map(|fields| fields.velocity).collect());
     column(1, "sigma", fields.iter().map(|fields| fields.stress).collect());
     column(1, "u", fields.iter().map(|fields| fields.displacement).collect());
-    kernel.text()
+    in_both(&kernel.entries)
 }
 
 /// A trace with one column more, the value in hexadecimal.
