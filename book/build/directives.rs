@@ -166,7 +166,10 @@ fn rows(file: &str) -> Result<Vec<Vec<String>>> {
 
 fn table(file: &str) -> Result<String> {
     let rows = rows(file)?;
-    let line = |row: &[String]| format!("| {} |\n", row.join(" | "));
+    // A cell is text: its bars end no column, its angles open no tag, its stars are stars.
+    let cell = |text: &String| text.replace('<', "&lt;").replace('|', "\\|").replace('*', "\\*");
+    let line =
+        |row: &[String]| format!("| {} |\n", row.iter().map(cell).collect::<Vec<_>>().join(" | "));
     let words: Vec<String> = rows[0].iter().map(|name| name.replace('_', " ")).collect();
     let mut out = line(&words);
     out.push_str(&line(&vec!["---".to_string(); words.len()]));
