@@ -259,17 +259,37 @@ fn riemann_fronts_are_the_jumps() {
     assert!(fronts > 200 && kept > 4000, "{fronts}, {kept}");
 }
 
+/// Two fronts that meet are one, also where their places differ in the last digits, on a
+/// bar of any length.
+#[test]
+fn riemann_fronts_that_meet_are_one() {
+    let mut unlike = 0;
+    for length in [1e-6, 1.0, 1e6] {
+        for n in 1..100 {
+            let (from, to) = (0.1 * length, (0.2 + 0.007 * n as f64) * length);
+            let patches = vec![Patch { from, to, velocity: 1.0 }];
+            let ends = [End::Free, End::Free];
+            let bar = Bar { length, density: 1.0, modulus: 1.0, ends, patches };
+            // c = 1: one from each edge, where they meet, and one on each side.
+            let t = 0.5 * (to - from);
+            assert_eq!(bar.fronts(t).len(), 3, "{length}: {:?}", bar.fronts(t));
+            unlike += usize::from(from + t != to - t);
+        }
+    }
+    assert!(unlike > 30, "{unlike}");
+}
+
 /// A free bar that is thrown as a whole flies on: v = V, σ = 0, u = V t at any time, also
 /// where the digits of ct that a number does not hold reach into another period.
 #[test]
 fn riemann_free_flight_to_the_latest_time() {
-    let patches = vec![Patch { from: 0.0, to: 2.5, velocity: 3.0 }];
     let ends = [End::Free, End::Free];
-    for (n, modulus) in (1..8000).zip([7e6, 5e6, 3e6, 2e6].into_iter().cycle()) {
-        let patches = patches.clone();
-        let bar = Bar { length: 2.5, density: 1000.0, modulus, ends, patches };
+    let bars = [(2.5, 7e6), (0.7, 5e6), (1.1, 3e6), (2.5, 2e6)].into_iter().cycle();
+    for (n, (length, modulus)) in (1..8000).zip(bars) {
+        let patches = vec![Patch { from: 0.0, to: length, velocity: 3.0 }];
+        let bar = Bar { length, density: 1000.0, modulus, ends, patches };
         let t = bar.latest() * n as f64 / 8000.3;
-        let fields = bar.at(2.5 * (n % 7) as f64 / 6.0, t);
+        let fields = bar.at(length * (n % 7) as f64 / 6.0, t);
         assert_eq!((fields.velocity, fields.stress), (3.0, 0.0), "t = {t:e}");
         assert_relative_eq!(fields.displacement, 3.0 * t, max_relative = 4e-15);
     }

@@ -292,23 +292,29 @@ fn lme_at_the_edge_of_the_numbers() {
 /// range of numbers, one for each node and evaluation.
 #[test]
 fn lme_counts_its_exponentials() {
-    let grid = Grid::over([4.0], [4], [[0, 0]]);
-    let counts = |gamma: f64| {
-        let (mut shape, mut scratch) = (Shape::<1>::blank(0), Scratch::default());
+    fn counts<const D: usize>(gamma: f64, points: &[[f64; D]]) -> (u64, u64) {
+        let grid = Grid::over([4.0; D], [4; D], [[0, 0]; D]);
+        let (mut shape, mut scratch) = (Shape::<D>::blank(0), Scratch::default());
         let mut cost = Cost::default();
-        let points = [Vector1::new(1.3), Vector1::new(2.6)];
+        let points: Vec<_> = points.iter().map(|x| SVector::from(*x)).collect();
         let basis = Basis::Lme { gamma, cutoff: 0.0 };
         tabulate(&mut shape, &mut scratch, &mut cost, &basis, &grid, &points).unwrap();
-        assert_eq!(shape.len(), 2 * 5, "every point sees every node");
+        assert_eq!(shape.len(), points.len() * 5usize.pow(D as u32), "every node is seen");
         (cost.exponentials, cost.newton_iterations)
-    };
-    let (exponentials, iterations) = counts(0.8);
+    }
+    let (exponentials, iterations) = counts(0.8, &[[1.3], [2.6]]);
     assert!(iterations > 1);
     assert_eq!(exponentials, 7 + iterations);
-    let (exponentials, iterations) = counts(50.0);
+    let (exponentials, iterations) = counts(50.0, &[[1.3], [2.6]]);
     assert!(iterations > 1);
     // Starts that are not near enough are evaluated without being iterations.
     assert!(exponentials % 5 == 0 && exponentials >= 5 * iterations, "{exponentials}");
+    // On a side the slopes take one for each node of the next layer.
+    let (exponentials, iterations) = counts(0.8, &[[1.3, 0.0]]);
+    assert!(iterations > 1);
+    assert_eq!(exponentials, 7 + 2 * iterations + 5);
+    // In a corner nothing is solved; each of its two sides has one such node.
+    assert_eq!(counts(0.8, &[[0.0, 4.0]]), (2, 0));
 }
 
 /// One node alone spans nothing: no point is in its hull, not even its own place, where

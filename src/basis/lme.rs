@@ -312,7 +312,11 @@ impl<const D: usize> Lme<D> {
         if let Some(node) = on_node {
             // Its exponent is 0, the others sum up to S: shares 1 and S of 1 + S.
             // In the gradient the share of the others cancels.
-            let S = if self.shares.is_empty() { 0.0 } else { self.Z * libm::exp(self.largest) };
+            let mut S = 0.0;
+            if !self.shares.is_empty() {
+                S = self.Z * libm::exp(self.largest);
+                self.exponentials += 1;
+            }
             self.shares.iter().for_each(|n| self.p[*n] *= S / (1.0 + S));
             self.p[node] = 1.0 / (1.0 + S);
             self.shares.push(node);

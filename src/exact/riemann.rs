@@ -138,7 +138,8 @@ impl Bar {
     // ANCHOR_END: at
 
     // ANCHOR: travel
-    /// c t as n periods of 4L and a rest in [0, 4L): (n, rest (m)).
+    /// c t as n periods of 4L and a rest ≥ 0: (n, rest (m)). The rest is below 4L,
+    /// or above by no more than the last digits of c t, and is followed as well.
     ///
     /// 4L is a period of every pair of ends. c and the product c t are carried
     /// with twice the digits, so the rest is right to the last bits for any
@@ -158,7 +159,6 @@ impl Bar {
         let periods = libm::round((s - rest) / period);
         match rest + s_low {
             below if below < 0.0 => (periods - 1.0, below + period),
-            above if above >= period => (periods + 1.0, above - period),
             rest => (periods, rest),
         }
     }
