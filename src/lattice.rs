@@ -27,7 +27,7 @@ pub fn points(method: Method, n: usize) -> Vec<[f64; 2]> {
         list.iter().map(|[r, w]| [0.5 + 0.5 * r, 0.5 * w]).collect()
     };
     match (method, n) {
-        (Method::Mpm, _) | (_, 1) => {
+        (Method::Mpm(_), _) | (_, 1) => {
             (0..n).map(|k| [(k as f64 + 0.5) / n as f64, 1.0 / n as f64]).collect()
         }
         (Method::Otm, 2) => {
@@ -58,7 +58,7 @@ pub fn places<const D: usize>(scene: &Scene) -> Vec<Place<D>> {
     let place = |number: [usize; D]| {
         let point = |d: usize| points[d][number[d] % per_cell[d]];
         let size = std::array::from_fn(|d| match scene.method {
-            Method::Mpm => h(d) / per_cell[d] as f64,
+            Method::Mpm(_) => h(d) / per_cell[d] as f64,
             Method::Otm => h(d) * point(d)[1],
         });
         Place {

@@ -12,7 +12,6 @@ use crate::exact::Exact;
 use crate::grid::Grid;
 use crate::lattice;
 use crate::scene::{Body, Mass, Method, Motion, Scene};
-use crate::time::Integrator;
 use nalgebra::{SMatrix, SVector};
 
 /// The fixed components of nodes, as pairs (I, i).
@@ -26,7 +25,6 @@ pub struct Model<const D: usize> {
     pub law: LinearElastic,
     /// Node I has zero velocity component i.
     pub fixed: Vec<(usize, usize)>,
-    pub integrator: Integrator,
     pub loads: Option<Loads<D>>,
     pub method: Method,
     pub mass: Mass,
@@ -112,7 +110,7 @@ impl<const D: usize> Model<D> {
         let steps = scene.step_count();
         Model {
             fixed: match scene.method {
-                Method::Mpm => fixed(scene, &grid),
+                Method::Mpm(_) => fixed(scene, &grid),
                 Method::Otm => {
                     let corners = lattice::corners(&grid, &lattice::places(scene));
                     let number = |(I, i): (usize, usize)| {
@@ -124,7 +122,6 @@ impl<const D: usize> Model<D> {
             grid,
             basis: scene.basis,
             law: LinearElastic::new(scene.body.youngs_modulus, scene.body.poisson_ratio),
-            integrator: scene.time.integrator,
             loads: lattice::loads(scene, &lattice::places::<D>(scene)),
             method: scene.method,
             mass: scene.mass,
@@ -159,7 +156,7 @@ impl<const D: usize> Model<D> {
         }
         let shape = Shape::blank(count);
         let node = match self.method {
-            Method::Mpm => Nodes::blank(self.grid.nodes()),
+            Method::Mpm(_) => Nodes::blank(self.grid.nodes()),
             Method::Otm => {
                 particle.F = vec![SMatrix::identity(); count];
                 let x = lattice::corners(&self.grid, &places);

@@ -97,7 +97,6 @@ fn run_in<const D: usize>(
     let mut recorder = Recorder::new(scene, &model, &state.particle);
     let bytes = Particles::<D>::BYTES
         + model.basis.bytes_per_particle::<D>()
-        + model.integrator.bytes_per_particle::<D>()
         + model.method.bytes_per_particle::<D>();
     let mut cost = Cost { bytes_per_particle: bytes as u64, ..Cost::default() };
     match march(scene, &model, &mut state, &mut recorder, &mut cost, progress) {

@@ -195,32 +195,34 @@ pub fn trace_in<const D: usize>(
     recorder.vectors("x_p", &state.particle.x);
     recorder.vectors("v_p", &state.particle.v);
     let cost = &mut Cost::default();
-    match model.integrator {
-        _ if model.method == Method::Otm => {
+    match model.method {
+        Method::Otm => {
             otm::start(&mut state, &model, cost)?;
             recorder.numbers("m_I", &state.node.m);
             recorder.vectors("v_I", &state.node.v);
         }
-        Integrator::Newmark(reading) => {
+        Method::Mpm(Integrator::Newmark(reading)) => {
             newmark(&mut recorder, &mut state, &model, reading, 0.0, Moment::START, cost)?;
         }
-        _ => time::start(&mut state, &model, cost)?,
+        Method::Mpm(_) => time::start(&mut state, &model, cost)?,
     }
     for k in 1..=steps {
         recorder.k = k;
         let moment = Moment { step: k, time: k as f64 * model.dt };
         let (r, s, m, dt) = (&mut recorder, &mut state, &model, model.dt);
-        match model.integrator {
-            _ if model.method == Method::Otm => otm_step(r, s, m, moment, cost)?,
-            Integrator::Newmark(reading) => newmark(r, s, m, reading, dt, moment, cost)?,
-            Integrator::ForwardEuler(order) => {
-                euler(r, s, m, order, move_with_nodes, moment, cost)?;
-            }
-            Integrator::CorrectedEuler => {
-                let order = StressUpdate::ModifiedLast;
-                euler(r, s, m, order, move_with_shares, moment, cost)?;
-            }
-            Integrator::GeneralizedAlpha { rho_b } => alpha(r, s, m, rho_b, moment, cost)?,
+        match model.method {
+            Method::Otm => otm_step(r, s, m, moment, cost)?,
+            Method::Mpm(integrator) => match integrator {
+                Integrator::Newmark(reading) => newmark(r, s, m, reading, dt, moment, cost)?,
+                Integrator::ForwardEuler(order) => {
+                    euler(r, s, m, order, move_with_nodes, moment, cost)?;
+                }
+                Integrator::CorrectedEuler => {
+                    let order = StressUpdate::ModifiedLast;
+                    euler(r, s, m, order, move_with_shares, moment, cost)?;
+                }
+                Integrator::GeneralizedAlpha { rho_b } => alpha(r, s, m, rho_b, moment, cost)?,
+            },
         }
         finite(&state.particle, moment)?;
     }

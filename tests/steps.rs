@@ -220,10 +220,9 @@ fn model(fixed: &[(usize, usize)], loads: Option<Loads<1>>) -> Model<1> {
         basis: Basis::Linear,
         law: LinearElastic::new(100.0, 0.0),
         fixed: fixed.to_vec(),
-        integrator: Integrator::CorrectedEuler,
         loads,
         mass: Mass::Lumped,
-        method: Method::Mpm,
+        method: Method::Mpm(Integrator::CorrectedEuler),
         dt: DT,
         steps: 1,
     }

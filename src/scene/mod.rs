@@ -46,19 +46,23 @@ pub struct Scene {
     pub vtk: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What carries a scene through time.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// The material point method.
-    Mpm,
-    /// The optimal transportation meshfree method.
+    /// The material point method, by one of its schemes.
+    Mpm(Integrator),
+    /// The optimal transportation meshfree method, which has one scheme.
     Otm,
 }
 
 impl Method {
-    /// Bytes that the method keeps for each particle: F_p of OTM.
+    /// Bytes that the method keeps for each particle: a_p of generalized-α, F_p of OTM.
     pub fn bytes_per_particle<const D: usize>(&self) -> usize {
         match self {
-            Method::Mpm => 0,
+            Method::Mpm(Integrator::GeneralizedAlpha { .. }) => {
+                size_of::<nalgebra::SVector<f64, D>>()
+            }
+            Method::Mpm(_) => 0,
             Method::Otm => size_of::<nalgebra::SMatrix<f64, D, D>>(),
         }
     }
@@ -110,7 +114,6 @@ pub struct GridSpec {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Time {
-    pub integrator: Integrator,
     /// The largest Courant number c Δt / h; that of `fraction_of_critical`, where
     /// it is smaller.
     pub cfl: f64,

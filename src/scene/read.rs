@@ -4,7 +4,7 @@ use super::check::{Check, counted};
 use super::file::*;
 use super::limits::affordable;
 use super::loads;
-use super::scheme::{basis, otm, time};
+use super::scheme::{basis, integrator, otm, time};
 use super::*;
 use crate::exact::mode::Mode;
 use crate::exact::riemann::End;
@@ -53,22 +53,21 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
     }
     let check = Check { source, dimension };
 
-    let method = check.choose(
-        "method",
-        file.method.get_ref(),
-        file.method.span(),
-        &[("mpm", Method::Mpm), ("otm", Method::Otm)],
-    )?;
+    let methods = [("mpm", false), ("otm", true)];
+    let is_otm = check.choose("method", file.method.get_ref(), file.method.span(), &methods)?;
     let masses = [("lumped", Mass::Lumped), ("consistent", Mass::Consistent)];
     let mass = check.choose("mass", file.mass.get_ref(), file.mass.span(), &masses)?;
     let body = body(&check, &file.body)?;
     let time = time(&check, &file.time)?;
+    let integrator = integrator(&check, &file.time)?;
     let boundary = boundary(&check, &file.boundary)?;
     let mut grid = grid(&check, &file.grid, &boundary, file.basis.kind.get_ref() == "ugimp")?;
-    if method == Method::Otm {
-        otm(&check, &file)?;
+    let method = if is_otm {
         grid.beyond.fill([0, 0]);
-    }
+        otm(&check, &file)?
+    } else {
+        Method::Mpm(integrator)
+    };
     let basis = basis(&check, &file.basis, &grid)?;
     filled(&check, &file.body.ball, &body, &grid)?;
     let motion = motion(&check, &file, method, &body, &grid, &boundary)?;

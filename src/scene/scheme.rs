@@ -2,7 +2,7 @@
 
 use super::check::Check;
 use super::file::{File, FileBasis, FileTime};
-use super::{GridSpec, Time};
+use super::{GridSpec, Method, Time};
 use crate::basis::Basis;
 use crate::fault::SceneError;
 use crate::reading::{StepEight, StressUpdate};
@@ -26,7 +26,6 @@ pub fn time(check: &Check, file: &FileTime) -> Result<Time, Box<SceneError>> {
         }
     };
     Ok(Time {
-        integrator: integrator(check, file)?,
         cfl,
         allow_unstable: file.allow_unstable.as_ref().is_some_and(|value| *value.get_ref()),
         end: check.number("time.end", &file.end, |x| x > 0.0)?,
@@ -34,7 +33,7 @@ pub fn time(check: &Check, file: &FileTime) -> Result<Time, Box<SceneError>> {
 }
 
 /// The scheme with what it needs; keys that mean nothing to it are refused.
-fn integrator(check: &Check, file: &FileTime) -> Result<Integrator, Box<SceneError>> {
+pub fn integrator(check: &Check, file: &FileTime) -> Result<Integrator, Box<SceneError>> {
     let (name, span) = (file.integrator.get_ref().as_str(), file.integrator.span());
     let kinds = [
         ("newmark", "time.reading"),
@@ -116,7 +115,7 @@ pub fn basis(check: &Check, file: &FileBasis, grid: &GridSpec) -> Result<Basis, 
 }
 
 /// What OTM cannot do, refused.
-pub fn otm(check: &Check, file: &File) -> Result<(), Box<SceneError>> {
+pub fn otm(check: &Check, file: &File) -> Result<Method, Box<SceneError>> {
     let refuse = |key: &str, span: std::ops::Range<usize>, problem: &str, allowed: &str| {
         let mut error = check.source.error(key, span, format!("with the method \"otm\" {problem}"));
         error.allowed = allowed.to_string();
@@ -154,5 +153,5 @@ pub fn otm(check: &Check, file: &File) -> Result<(), Box<SceneError>> {
         let problem = "the nodes are the body's own, and none stands beyond it";
         return refuse(&format!("grid.beyond.{name}"), cells.span(), problem, "no such key");
     }
-    Ok(())
+    Ok(Method::Otm)
 }

@@ -53,8 +53,10 @@ enum Factor {
 // ANCHOR: factor
 impl Factor {
     fn of<const D: usize>(model: &Model<D>) -> Self {
-        match model.integrator {
-            _ if model.method == Method::Otm => Factor::One,
+        let Method::Mpm(integrator) = model.method else {
+            return Factor::One;
+        };
+        match integrator {
             Integrator::Newmark(_) | Integrator::CorrectedEuler => Factor::Filtered,
             Integrator::ForwardEuler(StressUpdate::Last) => Factor::Last,
             Integrator::ForwardEuler(_) => Factor::Filtered,
@@ -293,7 +295,7 @@ fn moved<const D: usize>(
     let mut cost = Cost::default();
     match model.method {
         Method::Otm => otm::start(&mut state, model, &mut cost)?,
-        Method::Mpm => {
+        Method::Mpm(_) => {
             let State { particle, node, shape, mass, scratch } = &mut state;
             let start = Moment::START;
             steps::tabulate(shape, scratch, particle, model, start, &mut cost)?;
@@ -334,7 +336,7 @@ fn shifts<const D: usize>(scene: &Scene, model: &Model<D>, offset: f64) -> Vec<S
     let per_cell = |d: usize| scene.grid.particles_per_cell[d] as f64;
     let shift: SVector<f64, D> = SVector::from_fn(|d, _| offset * model.grid.h[d] / per_cell(d));
     match (model.method, model.basis) {
-        (Method::Mpm, Basis::Ugimp { .. } | Basis::BSpline) => {
+        (Method::Mpm(_), Basis::Ugimp { .. } | Basis::BSpline) => {
             [0.0, -TOUCH, TOUCH].map(|side| shift + model.grid.h * side).to_vec()
         }
         _ => vec![shift],

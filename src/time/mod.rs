@@ -29,16 +29,6 @@ pub enum Integrator {
     },
 }
 
-impl Integrator {
-    /// Bytes that the scheme keeps for each particle: a_p of generalized-α.
-    pub fn bytes_per_particle<const D: usize>(&self) -> usize {
-        match self {
-            Integrator::GeneralizedAlpha { .. } => size_of::<nalgebra::SVector<f64, D>>(),
-            _ => 0,
-        }
-    }
-}
-
 /// What a scheme needs at k = 0: with Newmark nodal values, by one time step with
 /// Δt = 0, in which nothing moves; with generalized-α the acceleration of loads
 /// that act at once; with the others nothing.
@@ -47,13 +37,13 @@ pub fn start<const D: usize>(
     model: &Model<D>,
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
-    match model.integrator {
-        _ if model.method == Method::Otm => otm::start(state, model, cost),
-        Integrator::Newmark(_) => step(state, model, 0.0, Moment::START, cost),
-        Integrator::GeneralizedAlpha { .. } if model.loads.is_some() => {
+    match model.method {
+        Method::Otm => otm::start(state, model, cost),
+        Method::Mpm(Integrator::Newmark(_)) => step(state, model, 0.0, Moment::START, cost),
+        Method::Mpm(Integrator::GeneralizedAlpha { .. }) if model.loads.is_some() => {
             generalized_alpha::start(state, model, cost)
         }
-        _ => steps::finite(&state.particle, Moment::START),
+        Method::Mpm(_) => steps::finite(&state.particle, Moment::START),
     }
 }
 
@@ -77,14 +67,18 @@ fn step<const D: usize>(
     moment: Moment,
     cost: &mut Cost,
 ) -> Result<(), Breakdown> {
-    match model.integrator {
-        _ if model.method == Method::Otm => otm::step(state, model, dt, moment, cost),
-        Integrator::Newmark(reading) => newmark::step(state, model, reading, dt, moment, cost),
-        Integrator::ForwardEuler(order) => euler::forward(state, model, order, dt, moment, cost),
-        Integrator::CorrectedEuler => euler::corrected(state, model, dt, moment, cost),
-        Integrator::GeneralizedAlpha { rho_b } => {
-            generalized_alpha::step(state, model, rho_b, dt, moment, cost)
-        }
+    match model.method {
+        Method::Otm => otm::step(state, model, dt, moment, cost),
+        Method::Mpm(integrator) => match integrator {
+            Integrator::Newmark(reading) => newmark::step(state, model, reading, dt, moment, cost),
+            Integrator::ForwardEuler(order) => {
+                euler::forward(state, model, order, dt, moment, cost)
+            }
+            Integrator::CorrectedEuler => euler::corrected(state, model, dt, moment, cost),
+            Integrator::GeneralizedAlpha { rho_b } => {
+                generalized_alpha::step(state, model, rho_b, dt, moment, cost)
+            }
+        },
     }?;
     steps::finite(&state.particle, moment)
 }
