@@ -1,5 +1,7 @@
 //! What several tests share: scenes with changes, runs, and orders.
 
+pub mod program;
+
 use lme_mpm::continuum::state::State;
 use lme_mpm::cost::Cost;
 use lme_mpm::fault::Moment;
@@ -15,6 +17,7 @@ pub const VIBRATION: &str = include_str!("../../data/scenes/vibration.toml");
 pub const GRAVITY: &str = include_str!("../../data/scenes/gravity.toml");
 pub const TRACTION: &str = include_str!("../../data/scenes/traction.toml");
 pub const MANUFACTURED: &str = include_str!("../../data/scenes/manufactured.toml");
+pub const DYKA_OTM: &str = include_str!("../../data/scenes/dyka-otm.toml");
 pub const DISCS: &str = include_str!("../../data/scenes/colliding-discs.toml");
 
 /// L/c of the Dyka bar [s], from c = √(E/ρ).
@@ -132,4 +135,20 @@ pub const SCHEMES: [(&str, &[&str]); 7] = [
 pub fn same_every_time(cases: u32) -> ProptestConfig {
     let rng_seed = RngSeed::Fixed(31);
     ProptestConfig { cases, failure_persistence: None, rng_seed, ..ProptestConfig::default() }
+}
+
+/// A square or cubic block, free on all sides, with the changes of `sets`.
+pub fn block(dimension: usize, sets: &[&str]) -> Scene {
+    let list = |x: &str| format!("[{}]", vec![x; dimension].join(","));
+    let text = format!(
+        "title = 'block'\nmethod = 'otm'\nmass = 'lumped'\n\
+         basis = {{ kind = 'lme', gamma = 1.8 }}\n\
+         body = {{ length = {}, density = 1000, youngs_modulus = 1e6, poisson_ratio = 0.3 }}\n\
+         grid = {{ cells = {}, particles_per_cell = {} }}\n\
+         time = {{ integrator = 'newmark', cfl = 0.4, end = 0.05 }}\n",
+        list("1"),
+        list(if dimension == 3 { "3" } else { "5" }),
+        list("1"),
+    );
+    scene(&text, sets)
 }
