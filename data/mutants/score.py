@@ -6,8 +6,8 @@
     python3 data/mutants/score.py target/mutants/*
 
 Each argument is a folder with `mutants.out` in it. A mutant is found if in one of them
-a test failed, or never ended, or if it does not compile. Writes `scores.csv` beside
-this file. Survivors stand in `survivors.csv` with the reason; one that does not, a row
+a test failed or never ended; one that does not compile counts neither as found nor as
+survived. Writes `scores.csv` beside this file. Survivors stand in `survivors.csv` with the reason; one that does not, a row
 that is no survivor, and a mutant that was not tried are named, and nothing is written.
 """
 import csv
@@ -17,10 +17,10 @@ import sys
 
 home = pathlib.Path(__file__).parent
 root = home.parent.parent
-found, missed = set(), set()
+tried = {"caught": set(), "timeout": set(), "unviable": set(), "missed": set()}
 for folder in sys.argv[1:]:
-    for file in (pathlib.Path(folder) / "mutants.out").glob("*.txt"):
-        (missed if file.stem == "missed" else found).update(file.read_text().splitlines())
+    for outcome, names in tried.items():
+        names.update((pathlib.Path(folder) / "mutants.out" / f"{outcome}.txt").read_text().splitlines())
 
 
 def place(name):
@@ -37,22 +37,24 @@ with open(home / "survivors.csv", newline="") as table:
 scores, seen, faults = {}, set(), []
 for name in listed:
     module = pathlib.Path(name.split(":")[0]).relative_to("src").parts[0].removesuffix(".rs")
-    score = scores.setdefault(module, {"mutants": 0, "found": 0, "survived": 0})
-    score["mutants"] += 1
-    if name in found:
-        score["found"] += 1
-    elif name in missed:
-        score["survived"] += 1
+    score = scores.setdefault(module, dict.fromkeys(["caught", "timeout", "unviable", "missed"], 0))
+    outcome = next((outcome for outcome in tried if name in tried[outcome]), None)
+    if outcome is None:
+        faults.append(f"not tried: {name}")
+        continue
+    score[outcome] += 1
+    if outcome == "missed":
         seen.add(place(name))
         if place(name) not in explained:
             faults.append(f"survived without a reason: {name}")
-    else:
-        faults.append(f"not tried: {name}")
 faults += [f"no survivor: {row}" for row in sorted(explained - seen)]
 if faults:
     sys.exit("\n".join(faults))
 with open(home / "scores.csv", "w", newline="") as table:
     writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(["module", "mutants", "found", "survived", "found in percent"])
+    writer.writerow(["module", "mutants", "a test fails", "never ends", "does not compile",
+                     "survived", "found in percent"])
     for module, score in sorted(scores.items()):
-        writer.writerow([module, *score.values(), f"{100 * score['found'] / score['mutants']:.1f}"])
+        found, total = score["caught"] + score["timeout"], sum(score.values())
+        percent = 100 * found / (total - score["unviable"])
+        writer.writerow([module, total, *score.values(), f"{percent:.1f}"])
