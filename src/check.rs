@@ -2,13 +2,16 @@
 //! order.
 #![allow(non_snake_case)]
 
+mod cause;
+
 use crate::fault::Fault;
-use crate::trace::{COLUMNS, Entry, SYMBOLS, number};
-use std::collections::{BTreeMap, HashMap};
+use crate::rows::{self, Rows, brief};
+use crate::trace::{COLUMNS, Entry, PAIRS, SYMBOLS, number};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::io::Read;
 
-/// How far two numbers may be apart: `relative` of the larger, or `absolute` of the
-/// largest value that the symbol has in its time step.
+/// How far two numbers may be apart: `relative` times the larger of them, plus
+/// `absolute` times the largest value that the symbol has in its time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     pub relative: f64,
@@ -20,6 +23,8 @@ pub struct Tolerance {
 pub struct Divergence {
     pub reference: Entry,
     pub theirs: f64,
+    /// The line in which it stands, if in any.
+    pub line: Option<u64>,
     /// Numbers between the two.
     pub ulps: u64,
     /// Where the likely cause is known.
@@ -32,78 +37,98 @@ pub struct Report {
     pub compared: usize,
     pub divergence: Option<Divergence>,
     /// Symbols of the reference with the number of values that were not there.
-    pub missing: BTreeMap<String, usize>,
+    pub missing: BTreeMap<&'static str, usize>,
+    /// Time steps of the reference of which nothing was there.
+    pub missing_steps: BTreeSet<usize>,
+    /// How many numbers the reference does not have; they are left out.
+    pub extra: usize,
 }
 
-type Key = (usize, usize, String, usize, Option<usize>, usize);
+/// Where an entry stands in a trace: k, step, symbol, index, node, component.
+type Place = (usize, usize, &'static str, usize, Option<usize>, usize);
 
-fn key(entry: &Entry, symbol: &str) -> Key {
-    let Entry { k, step, index, node, component, .. } = *entry;
-    (k, step, symbol.to_string(), index, node, component)
+/// All numbers of a particle or node that one step makes of a symbol.
+type Row = (usize, usize, &'static str, usize);
+
+fn place(entry: &Entry) -> Place {
+    let Entry { k, step, symbol, index, node, component, .. } = *entry;
+    (k, step, symbol, index, node, component)
 }
 
-/// Entries of a CSV file with the columns of a trace, in any order of columns.
+fn row(entry: &Entry) -> Row {
+    (entry.k, entry.step, entry.symbol, entry.index)
+}
+
+/// What a port has printed.
+#[derive(Clone, Debug)]
+pub struct Printed {
+    name: String,
+    pub entries: Vec<Entry>,
+    /// The line of each entry; empty if they were never in a file.
+    lines: Vec<u64>,
+}
+
+impl From<Vec<Entry>> for Printed {
+    fn from(entries: Vec<Entry>) -> Self {
+        Printed { name: "theirs".to_string(), entries, lines: Vec::new() }
+    }
+}
+
+/// Reads a CSV file with the columns of a trace, in any order; other columns are not
+/// read.
 ///
-/// Errors: [`Fault::Points`] with the line: a missing column, a value that is not a
-/// number or not finite, a symbol that is not known, a line that stands twice.
-pub fn read(name: &str, input: impl Read) -> Result<Vec<Entry>, Fault> {
-    let fault = |line: u64, problem: String, allowed: String| Fault::Points {
-        path: name.to_string(),
-        line,
-        problem,
-        allowed,
-    };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(input);
-    let wanted = || format!("the columns {}", COLUMNS.join(","));
-    let header = reader.headers().map_err(|e| fault(1, e.to_string(), wanted()))?.clone();
+/// Errors: [`Fault::Read`]; [`Fault::Points`] with the line: a missing column, a value
+/// that is not a number or not finite, a symbol that is not known, a node where none
+/// belongs or none where one does, a line that stands twice.
+pub fn read(name: &str, input: impl Read) -> Result<Printed, Fault> {
+    let text = rows::text(name, input)?;
+    let wanted = format!("the columns {}", COLUMNS.join(","));
+    let mut rows = Rows::of(name, &text, wanted)?;
     let mut at = [0; COLUMNS.len()];
     for (place, column) in at.iter_mut().zip(COLUMNS) {
-        *place = header
+        *place = rows
+            .header
             .iter()
             .position(|found| found == column)
-            .ok_or_else(|| fault(1, format!("there is no column `{column}`"), wanted()))?;
+            .ok_or_else(|| rows.no_header(format!("there is no column `{column}`")))?;
     }
-    let (mut entries, mut seen) = (Vec::new(), HashMap::new());
-    for record in reader.into_records() {
-        let record = record.map_err(|error| {
-            let line = error.position().map_or(0, csv::Position::line);
-            fault(line, error.to_string(), wanted())
-        })?;
-        let line = record.position().map_or(0, csv::Position::line);
+    let (mut entries, mut lines, mut seen) = (Vec::new(), Vec::new(), HashMap::new());
+    while let Some((line, record)) = rows.next_row()? {
         let cell = |n: usize| record.get(at[n]).unwrap_or("");
+        let fault = |problem: String, allowed: String| rows.fault(line, problem, allowed);
         let whole = |n: usize| {
             cell(n).parse::<usize>().map_err(|_| {
-                let problem = format!("`{}` is not a value of {}", cell(n), COLUMNS[n]);
-                fault(line, problem, "a whole number from 0 up".into())
+                let problem = format!("`{}` is not a value of {}", brief(cell(n)), COLUMNS[n]);
+                fault(problem, "a whole number from 0 up".into())
             })
         };
         let symbol = SYMBOLS.iter().map(|symbol| symbol.0).find(|name| *name == cell(2));
         let symbol = symbol.ok_or_else(|| {
             let names: Vec<&str> = SYMBOLS.iter().map(|symbol| symbol.0).collect();
-            fault(line, format!("`{}` is not a symbol", cell(2)), names.join(", "))
+            fault(format!("`{}` is not a symbol", brief(cell(2))), names.join(", "))
         })?;
         let value = number(cell(6)).filter(|x| x.is_finite()).ok_or_else(|| {
-            let problem = format!("`{}` is not a value of {symbol}", cell(6));
-            fault(line, problem, "a finite number, decimal or hexadecimal".into())
+            let problem = format!("`{}` is not a value of {symbol}", brief(cell(6)));
+            fault(problem, "a finite number, decimal or hexadecimal".into())
         })?;
-        let node = if cell(4).is_empty() { None } else { Some(whole(4)?) };
+        let node = match (PAIRS.contains(&symbol), cell(4)) {
+            (true, _) => Some(whole(4)?),
+            (false, "") => None,
+            (false, node) => {
+                let problem = format!("{symbol} is not a pair, and has the node `{}`", brief(node));
+                return Err(fault(problem, "an empty cell for the node".into()));
+            }
+        };
         let (k, step, index, component) = (whole(0)?, whole(1)?, whole(3)?, whole(5)?);
         let entry = Entry { k, step, symbol, index, node, component, value };
-        if let Some(before) = seen.insert(key(&entry, symbol), line) {
+        if let Some(before) = seen.insert(place(&entry), line) {
             let problem = format!("the same number stands in line {before} already");
-            return Err(fault(line, problem, "each number once".into()));
+            return Err(fault(problem, "each number once".into()));
         }
         entries.push(entry);
+        lines.push(line);
     }
-    Ok(entries)
-}
-
-/// The entries of `theirs` that `reference` has, too: for a reference that is a part
-/// of what a port prints.
-pub fn common(reference: &[Entry], theirs: Vec<Entry>) -> Vec<Entry> {
-    let known: std::collections::HashSet<Key> =
-        reference.iter().map(|entry| key(entry, entry.symbol)).collect();
-    theirs.into_iter().filter(|entry| known.contains(&key(entry, entry.symbol))).collect()
+    Ok(Printed { name: name.to_string(), entries, lines })
 }
 
 /// Numbers between a and b, counted as steps of the last bit.
@@ -117,210 +142,188 @@ pub fn ulps(a: f64, b: f64) -> u64 {
 }
 
 // ANCHOR: compare
-/// Compares what both have, in the order of the reference, up to the first
-/// difference.
+/// Compares what both have, in the paper's order, up to the first difference.
 ///
-/// Errors: [`Fault::Argument`] for entries that the reference does not have, or if
-/// they have nothing in common.
+/// A port may leave out time steps, or symbols of a time step. Of a symbol that it
+/// prints in a time step it prints all numbers, and no others; nodes that a particle
+/// does not see may be there with 0, or not. With `part` only what both have is
+/// compared.
+///
+/// Errors, where nothing differs: [`Fault::Alone`] for a number that only one of them
+/// has, or if they have nothing in common.
 pub fn compare(
     reference: &[Entry],
-    theirs: &[Entry],
+    theirs: &Printed,
     tolerance: Tolerance,
+    part: bool,
 ) -> Result<Report, Fault> {
-    let known: HashMap<Key, f64> =
-        reference.iter().map(|entry| (key(entry, entry.symbol), entry.value)).collect();
     let mut scales: HashMap<(usize, &str), f64> = HashMap::new();
-    for entry in reference.iter() {
+    for entry in reference {
         let scale = scales.entry((entry.k, entry.symbol)).or_insert(0.0);
         *scale = scale.max(entry.value.abs());
     }
-    let mut own: HashMap<Key, f64> = HashMap::new();
-    let mut reference = reference.to_vec();
-    for entry in theirs {
-        let key = key(entry, entry.symbol);
-        if !known.contains_key(&key) {
-            let place = |r: &Entry| (r.k, r.step, r.symbol) == (entry.k, entry.step, entry.symbol);
-            match reference.iter().position(place).filter(|_| entry.node.is_some()) {
-                // A node that the particle does not see: its function is 0 there.
-                Some(at) => reference.insert(at, Entry { value: 0.0, ..entry.clone() }),
-                None => {
-                    return Err(Fault::Argument {
-                        argument: "theirs",
-                        problem: format!(
-                            "k = {}, step {}: {} has index {}{}, component {}, which the reference has not",
-                            entry.k,
-                            entry.step,
-                            entry.symbol,
-                            entry.index,
-                            entry.node.map_or(String::new(), |node| format!(", node {node}")),
-                            entry.component
-                        ),
-                        allowed: "a part of what the reference has",
-                    });
-                }
-            }
-        }
-        own.insert(key, entry.value);
-    }
-    let mut report = Report { compared: 0, divergence: None, missing: BTreeMap::new() };
+    let own = Own::new(theirs);
+    let (reference, extra) = with_unseen_nodes(reference, theirs);
+    let mut report = Report {
+        compared: 0,
+        divergence: None,
+        missing: BTreeMap::new(),
+        missing_steps: reference.iter().map(|entry| entry.k).collect(),
+        extra: extra.len(),
+    };
+    let (mut first, mut gap) = (None, None);
     for entry in &reference {
-        let Some(&value) = own.get(&key(entry, entry.symbol)) else {
-            *report.missing.entry(entry.symbol.to_string()).or_insert(0) += 1;
+        let Some(value) = own.value(entry) else {
+            gap = gap.or(Some(entry).filter(|_| own.has_symbol(entry)));
+            *report.missing.entry(entry.symbol).or_insert(0) += 1;
             continue;
         };
         report.compared += 1;
-        if report.divergence.is_some() {
-            continue;
-        }
-        let scale = scales.get(&(entry.k, entry.symbol)).copied().unwrap_or(0.0);
+        report.missing_steps.remove(&entry.k);
         let size = entry.value.abs().max(value.abs());
+        let scale = scales.get(&(entry.k, entry.symbol)).copied().unwrap_or(0.0);
         let room = tolerance.relative * size + tolerance.absolute * scale;
-        if (value - entry.value).abs() > room {
-            let cause = cause(entry, value, &reference, &own);
-            let ulps = ulps(entry.value, value);
-            let reference = entry.clone();
-            report.divergence = Some(Divergence { reference, theirs: value, ulps, cause });
+        if first.is_none() && (value - entry.value).abs() > room {
+            first = Some((entry, value));
         }
     }
-    match report.compared {
-        0 => Err(Fault::Argument {
-            argument: "theirs",
+    if let Some((entry, value)) = first {
+        report.divergence = Some(Divergence {
+            reference: entry.clone(),
+            theirs: value,
+            line: own.line(entry),
+            ulps: ulps(entry.value, value),
+            cause: cause::of(entry, value, &reference, &own.values),
+        });
+        return Ok(report);
+    }
+    match (extra.first(), gap) {
+        (Some((entry, line)), _) if !part => Err(alone(theirs, entry, *line)),
+        (_, Some(entry)) if !part => Err(alone(theirs, entry, None)),
+        _ if report.compared == 0 => Err(Fault::Alone {
+            place: theirs.name.clone(),
             problem: "it has nothing that the reference has".into(),
-            allowed: "a part of what the reference has",
         }),
         _ => Ok(report),
     }
 }
 // ANCHOR_END: compare
 
-/// What such a difference usually comes from.
-fn cause(
-    entry: &Entry,
-    theirs: f64,
-    reference: &[Entry],
-    own: &HashMap<Key, f64>,
-) -> Option<String> {
-    let value = entry.value;
-    let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * a.abs().max(b.abs());
-    let of = |symbol: &str, index: usize| {
-        let same = |e: &&Entry| {
-            (e.k, e.symbol, e.index, e.component) == (entry.k, symbol, index, entry.component)
-        };
-        reference.iter().find(same).map(|e| e.value)
+/// What a port has printed, to look things up.
+struct Own<'a> {
+    values: HashMap<Place, f64>,
+    lines: HashMap<Place, u64>,
+    rows: HashSet<Row>,
+    symbols: HashSet<(usize, usize, &'a str)>,
+}
+
+impl<'a> Own<'a> {
+    fn new(theirs: &'a Printed) -> Self {
+        let places = || theirs.entries.iter().map(place);
+        Own {
+            values: theirs.entries.iter().map(|entry| (place(entry), entry.value)).collect(),
+            lines: places().zip(theirs.lines.iter().copied()).collect(),
+            rows: theirs.entries.iter().map(row).collect(),
+            symbols: theirs.entries.iter().map(|e| (e.k, e.step, e.symbol)).collect(),
+        }
+    }
+
+    /// Its value; 0 for a node that is not among those of its particle.
+    fn value(&self, entry: &Entry) -> Option<f64> {
+        let unseen = || (entry.node.is_some() && self.rows.contains(&row(entry))).then_some(0.0);
+        self.values.get(&place(entry)).copied().or_else(unseen)
+    }
+
+    fn line(&self, entry: &Entry) -> Option<u64> {
+        self.lines.get(&place(entry)).copied()
+    }
+
+    fn has_symbol(&self, entry: &Entry) -> bool {
+        self.symbols.contains(&(entry.k, entry.step, entry.symbol))
+    }
+}
+
+/// An entry of a port, and its line if it has one.
+type Lined<'a> = (&'a Entry, Option<u64>);
+
+/// The reference in the paper's order, with a 0 for every node that only `theirs` has
+/// at a particle; and what else only `theirs` has.
+fn with_unseen_nodes<'a>(reference: &[Entry], theirs: &'a Printed) -> (Vec<Entry>, Vec<Lined<'a>>) {
+    let known: HashSet<Place> = reference.iter().map(place).collect();
+    let rows: HashMap<Row, usize> = reference.iter().map(|e| (row(e), e.component)).collect();
+    let (mut all, mut extra) = (reference.to_vec(), Vec::new());
+    for (n, entry) in theirs.entries.iter().enumerate().filter(|(_, e)| !known.contains(&place(e)))
+    {
+        // The last row has the largest component.
+        match rows.get(&row(entry)).filter(|most| entry.node.is_some() && entry.component <= **most)
+        {
+            Some(_) => all.push(Entry { value: 0.0, ..entry.clone() }),
+            None => extra.push((entry, theirs.lines.get(n).copied())),
+        }
+    }
+    let order = |symbol: &str| SYMBOLS.iter().position(|known| known.0 == symbol);
+    all.sort_by_key(|e| (e.k, e.step, order(e.symbol), e.index, e.node, e.component));
+    (all, extra)
+}
+
+/// A number that only one of the two has: the port, with its line, or the reference.
+fn alone(theirs: &Printed, entry: &Entry, line: Option<u64>) -> Fault {
+    let extra = theirs.entries.iter().any(|own| place(own) == place(entry));
+    let (has, other) = match extra {
+        true => ("there is", "which the reference has not"),
+        false => ("there is no", "but others of its kind"),
     };
-    let say = |text: &str| Some(text.to_string());
-    if value == 0.0 && ["p_I", "v_I", "f_I", "p_I_advanced"].contains(&entry.symbol) {
-        return say("a fixed node keeps its momentum or force: set it to 0 (step 4, step 7)");
+    Fault::Alone {
+        place: line.map_or(theirs.name.clone(), |line| format!("{}, line {line}", theirs.name)),
+        problem: format!("{has} {}, {other}", spelled(entry)),
     }
-    if value != 0.0 && near(theirs, -value) {
-        return match entry.symbol {
-            "f_int_I" | "f_I" => say("the sign of the internal force: f_int = −Σ σ ∇N m/ρ"),
-            _ => say("the sign"),
-        };
-    }
-    // Shifted by one: this value and the next are their neighbours' in the reference.
-    let theirs_at = |index: usize| {
-        let symbol = entry.symbol.to_string();
-        own.get(&(entry.k, entry.step, symbol, index, entry.node, entry.component)).copied()
-    };
-    let shifted = |by: isize| {
-        [entry.index, entry.index + 1].into_iter().all(|index| {
-            let here = (theirs_at(index), of(entry.symbol, index));
-            let there = of(entry.symbol, index.wrapping_add_signed(by));
-            match (here, there) {
-                ((Some(theirs), Some(here)), Some(there)) => {
-                    near(theirs, there) && !near(theirs, here)
-                }
-                _ => false,
-            }
-        })
-    };
-    if entry.node.is_none() && (shifted(1) || shifted(-1)) {
-        return say("the numbering is off by one");
-    }
-    if entry.node.is_some() && value == 0.0 {
-        return say(
-            "the particle does not see that node: numbering off by one, cut-off, or γ = βh²",
-        );
-    }
-    if let Some(node) = entry.node {
-        let with = |node: usize| {
-            own.get(&(
-                entry.k,
-                entry.step,
-                entry.symbol.to_string(),
-                entry.index,
-                Some(node),
-                entry.component,
-            ))
-        };
-        let shifted = [node.wrapping_sub(1), node + 1];
-        if shifted.iter().any(|n| with(*n).is_some_and(|x| near(*x, value) && !near(*x, theirs))) {
-            return say("nodes are numbered off by one");
-        }
-        if entry.symbol == "grad_N_Ip" {
-            return say(
-                "the gradient: is the factor 1/h there, and is λ solved on this set of nodes?",
-            );
-        }
-        return say("the set of nodes (cut-off), γ = βh², or λ not converged on this set");
-    }
-    match entry.symbol {
-        "rms" => say("(39) as printed has no square: √(1/N Σ (φ − φ̂)²)"),
-        "v" | "sigma" | "u" => say(
-            "the ends: a fixed one turns the invariant's sign, a free one does not, and both give \
-             back the whole wave",
-        ),
-        "lambda" => say("λ: γ = βh² (not β/h²), solved on the set that the cut-off leaves"),
-        "m_I" => say("the mass of a particle is ρ times its share of the cell"),
-        "f_int_I" => {
-            say("σ and ρ are of another moment (time.stress_update), or the volume is not m/ρ")
-        }
-        "v_I" => say("v_I = p_I/m_I; or is one of the two with the consistent mass matrix?"),
-        "rho_p" => {
-            say("the density is updated with the strain increment of this step: ρ/(1 + tr Δε)")
-        }
-        "d_eps_p" => say(
-            "the nodal velocity that the strain is taken from: before or after the momentum is \
-             advanced, or mapped anew (time.stress_update)",
-        ),
-        "sigma_p" => say("Δσ = λ tr(Δε) 1 + 2μ Δε with Δε of this step; in 2D plane strain"),
-        "p_I_advanced" if entry.step == 8 => {
-            say("step 8 adds γ f Δt; as printed, f Δt (time.reading)")
-        }
-        "v_p" | "x_p" => {
-            say("old and new N, or half and whole steps, mixed: the corrector uses all at k+1")
-        }
-        _ if value != 0.0 && (near(theirs, 2.0 * value) || near(theirs, 0.5 * value)) => {
-            say("a factor of two")
-        }
-        _ => None,
-    }
+}
+
+/// Where an entry stands, in words.
+fn spelled(entry: &Entry) -> String {
+    let Entry { k, step, symbol, index, node, component, .. } = entry;
+    let node = node.map_or(String::new(), |node| format!(", node {node}"));
+    format!("{symbol} of k = {k}, step {step}, index {index}{node}, component {component}")
 }
 
 impl Report {
     /// The report for a reader; `reference` and `theirs` are the files.
     pub fn text(&self) -> String {
         let mut text = match &self.divergence {
-            None => format!("{} numbers agree\n", self.compared),
-            Some(Divergence { reference: r, theirs, ulps, cause }) => {
-                let (_, equation, link) =
-                    SYMBOLS.iter().find(|s| s.0 == r.symbol).copied().unwrap_or((r.symbol, "", ""));
+            None => {
+                let all = self.compared + self.missing.values().sum::<usize>();
+                format!("{} of {all} numbers agree\n", self.compared)
+            }
+            Some(Divergence { reference: r, theirs, line, ulps, cause }) => {
+                let (equation, link) = cause::source(r);
                 let node = r.node.map_or(String::new(), |node| format!(", node {node}"));
-                let relative = (theirs - r.value).abs() / r.value.abs().max(theirs.abs());
+                let line = line.map_or(String::new(), |line| format!(" in line {line}"));
+                let size = r.value.abs().max(theirs.abs());
+                let relative = (theirs / size - r.value / size).abs();
+                let apart = match r.value * theirs > 0.0 {
+                    true => format!("{ulps} numbers apart"),
+                    false => "not of one sign".to_string(),
+                };
                 let cause = cause.as_ref().map_or(String::new(), |c| format!("  likely: {c}\n"));
                 format!(
                     "first difference: k = {}, step {}, {} of {equation}, index {}{node}, \
-                     component {}\n  reference {:?}\n  theirs    {:?}\n  relative {relative:.1e}, \
-                     {ulps} numbers apart\n{cause}  book: {link}\n",
+                     component {}\n  reference {:?}\n  theirs    {:?}{line}\n  relative \
+                     {relative:.1e}, {apart}\n{cause}  book: {link}\n",
                     r.k, r.step, r.symbol, r.index, r.component, r.value, theirs
                 )
             }
         };
+        let before = |k: &&usize| self.divergence.as_ref().is_some_and(|d| **k < d.reference.k);
+        if let Some(k) = self.missing_steps.iter().find(before) {
+            text += &format!("it may come from before: nothing of k = {k} was compared\n");
+        }
         if !self.missing.is_empty() {
             let list: Vec<String> =
                 self.missing.iter().map(|(symbol, n)| format!("{symbol} ({n})")).collect();
             text += &format!("not compared, since they are not there: {}\n", list.join(", "));
+        }
+        if self.extra > 0 {
+            text += &format!("not compared, since the reference has none: {}\n", self.extra);
         }
         text
     }

@@ -45,6 +45,8 @@ pub enum Breakdown {
     Inverted { particle: usize, moment: Moment, strain: f64 },
     #[error("the {symbol} of particle {particle} is not a finite number at {moment}")]
     NotFinite { particle: usize, moment: Moment, symbol: &'static str },
+    #[error("the {symbol} of node {node} is not a finite number at {moment}")]
+    NodeNotFinite { node: usize, moment: Moment, symbol: &'static str },
     #[error("local max-ent cannot serve particle {particle} at {moment}: {failure}")]
     NoBasis { particle: usize, moment: Moment, failure: Failure },
     #[error(
@@ -67,6 +69,7 @@ impl Breakdown {
             Breakdown::LeftGrid { moment, .. }
             | Breakdown::Inverted { moment, .. }
             | Breakdown::NotFinite { moment, .. }
+            | Breakdown::NodeNotFinite { moment, .. }
             | Breakdown::NoBasis { moment, .. }
             | Breakdown::SingularMass { moment, .. }
             | Breakdown::Diverged { moment, .. } => *moment,
@@ -153,6 +156,11 @@ pub enum Fault {
     NothingReaches { quantity: &'static str, error: f64, best: f64 },
     #[error("no exact solution is known for this scene: {why}")]
     NoExact { why: &'static str },
+    #[error(
+        "{place}: {problem}; allowed: of a symbol in a time step all numbers or none; --part \
+         compares what both have"
+    )]
+    Alone { place: String, problem: String },
     #[error("{0}")]
     Differs(String),
     #[error("{breakdown}\n{advice}")]

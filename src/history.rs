@@ -68,7 +68,14 @@ pub fn shortest(x: f64) -> String {
 /// Errors: [`Fault::Write`] with the path.
 pub fn write_all(dir: &Path, files: &[(String, Vec<u8>)], stale: &[String]) -> Result<(), Fault> {
     let fault = |path: &Path, source| Fault::Write { path: path.to_path_buf(), source };
-    let temporary = |name: &str| dir.join(format!(".{name}.part"));
+    for (name, _) in files {
+        // What is not a file of its own (a device, a pipe, a link) would be replaced by one.
+        let path = dir.join(name);
+        if fs::symlink_metadata(&path).is_ok_and(|there| !there.is_file()) {
+            return Err(fault(&path, std::io::Error::other("it is not a regular file")));
+        }
+    }
+    let temporary = |name: &str| dir.join(format!(".{name}.{}.part", std::process::id()));
     let write = || -> Result<(), Fault> {
         for (name, bytes) in files {
             let path = temporary(name);
@@ -101,7 +108,7 @@ pub fn write_all(dir: &Path, files: &[(String, Vec<u8>)], stale: &[String]) -> R
 pub fn prepare(dir: &Path) -> Result<(), Fault> {
     let fault = |source| Fault::Write { path: dir.to_path_buf(), source };
     fs::create_dir_all(dir).map_err(fault)?;
-    let probe = dir.join(".writable.part");
+    let probe = dir.join(format!(".writable.{}.part", std::process::id()));
     fs::write(&probe, []).map_err(fault)?;
     fs::remove_file(&probe).map_err(fault)
 }

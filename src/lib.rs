@@ -27,7 +27,7 @@
 //!
 //! Around the paper stand [`scene`] (what to compute), [`model`] and [`run`]
 //! (the time loop), [`history`], [`summary`], [`figure`], [`vtk`]
-//! and [`report`] (what comes out), [`points`] (values at points),
+//! and [`report`] (what comes out), [`points`] (values at points), [`rows`] (CSV that others write),
 //! [`cost`] (what it took) and [`fault`] (what can go wrong).
 
 pub mod basis;
@@ -46,6 +46,7 @@ pub mod otm;
 pub mod points;
 pub mod reading;
 pub mod report;
+pub mod rows;
 pub mod run;
 pub mod scene;
 pub mod study;

@@ -91,7 +91,7 @@ enum Command {
     Trace {
         /// The scene file (TOML, SI units)
         scene: PathBuf,
-        /// How many time steps
+        /// How many time steps, at most those of the scene
         #[arg(long, value_name = "K", default_value_t = 1)]
         steps: usize,
         /// Replace or add a value of the scene; may be given again
@@ -100,28 +100,31 @@ enum Command {
         /// Numbers in hexadecimal, as C prints them with %a
         #[arg(long)]
         hex: bool,
-        /// Where to write; standard output without it
+        /// Where to write, folders are made; without it, or with -, standard output
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
     /// Hold a port's trace against a reference
     ///
-    /// Reads two CSV files with the columns of a trace. The port's may be any part
-    /// of the reference. Reports the first number that differs, in the paper's
-    /// order, with its equation and the likely cause; the exit code is then 1.
-    #[command(after_help = "Example:\n  lme-mpm check trace.csv port.csv")]
+    /// Reads two CSV files with the columns of a trace. The port may leave out time
+    /// steps, or symbols of a time step, and is told so. Reports the first number
+    /// that differs, in the paper's order, with its equation and the likely cause;
+    /// the exit code is then 1, and 2 for files that cannot be compared.
+    #[command(
+        after_help = "Example:\n  lme-mpm check data/conformance/level-1/linear_1.csv port.csv --rtol 1e-11 --atol 1e-13"
+    )]
     Check {
-        /// What `lme-mpm trace` wrote
+        /// What `lme-mpm trace` wrote, or a file of the conformance kit; - reads standard input
         reference: PathBuf,
         /// What the port wrote; - reads standard input
         theirs: PathBuf,
         /// Allowed difference, relative to the number
-        #[arg(long, default_value_t = 1e-9)]
+        #[arg(long, default_value_t = 1e-9, value_parser = fraction)]
         rtol: f64,
-        /// Allowed difference, relative to the largest value of the symbol in its step
-        #[arg(long, default_value_t = 1e-12)]
+        /// Allowed besides, relative to the largest value of the symbol in its time step
+        #[arg(long, default_value_t = 1e-12, value_parser = fraction)]
         atol: f64,
-        /// Leave out what the reference does not have, instead of refusing it
+        /// Compare what both have, also where the port has only some numbers of a symbol, or more
         #[arg(long)]
         part: bool,
     },
@@ -406,26 +409,55 @@ fn trace(
     out: Option<&Path>,
 ) -> Result<(), Fault> {
     let scene = Scene::open(path, sets)?;
+    lme_mpm::trace::affordable(&scene, steps)?;
+    report::stable(&scene)?;
+    let place = match out {
+        Some(out) if out != Path::new("-") => Some(place_beside(path, out)?),
+        _ => None,
+    };
     let entries = lme_mpm::trace::trace(&scene, steps)
         .map_err(|breakdown| Fault::Run { breakdown, advice: "nothing was written".to_string() })?;
     let text = lme_mpm::trace::csv(&entries, hex)?;
-    let Some(path) = out else { return print_bytes(&text) };
-    let folder = path.parent().filter(|p| *p != Path::new("")).unwrap_or(Path::new("."));
-    let name = path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+    match place {
+        None => print_bytes(&text),
+        Some((folder, name)) => lme_mpm::history::write_all(&folder, &[(name, text)], &[]),
+    }
+}
+
+/// Folder, made if need be, and name of a file to write, which is not the `input`.
+fn place_beside(input: &Path, out: &Path) -> Result<(PathBuf, String), Fault> {
+    let refuse = |problem: &str| Fault::Argument {
+        argument: "--out",
+        problem: format!("`{}` is {problem}", out.display()),
+        allowed: "a file to write, or - for standard output",
+    };
+    let folder = out.parent().filter(|p| *p != Path::new("")).unwrap_or(Path::new("."));
+    let Some(name) = out.file_name().filter(|_| !out.is_dir()) else {
+        return Err(refuse("a directory"));
+    };
+    if let (Ok(input), Ok(out)) = (input.canonicalize(), out.canonicalize())
+        && input == out
+    {
+        return Err(refuse("the scene itself"));
+    }
     lme_mpm::history::prepare(folder)?;
-    lme_mpm::history::write_all(folder, &[(name, text)], &[])
+    Ok((folder.to_path_buf(), name.to_string_lossy().into_owned()))
 }
 
 fn compare(reference: &Path, theirs: &Path, tolerance: Tolerance, part: bool) -> Result<(), Fault> {
-    let read = |path: &Path| check::read(&path.display().to_string(), open(path)?);
-    let (reference, mut theirs) = (read(reference)?, read(theirs)?);
-    if part {
-        theirs = check::common(&reference, theirs);
+    if reference == Path::new("-") && theirs == Path::new("-") {
+        return Err(Fault::Argument {
+            argument: "THEIRS",
+            problem: "standard input cannot be both".to_string(),
+            allowed: "a file, or - if the reference is one",
+        });
     }
-    let report = check::compare(&reference, &theirs, tolerance)?;
+    let read = |path: &Path| check::read(&path.display().to_string(), open(path)?);
+    let (reference, theirs) = (read(reference)?, read(theirs)?);
+    let report = check::compare(&reference.entries, &theirs, tolerance, part)?;
     match report.divergence {
         None => print_bytes(report.text().as_bytes()),
-        Some(_) => Err(Fault::Differs(report.text())),
+        Some(_) => Err(Fault::Differs(report.text().trim_end().to_string())),
     }
 }
 

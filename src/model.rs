@@ -47,6 +47,7 @@ impl Scene {
         per_axis.map(|(length, cells)| length / *cells as f64).fold(f64::INFINITY, f64::min)
     }
 
+    // ANCHOR: step_count
     /// N_t: as many equal steps as keep c Δt / h at or below `time.cfl`.
     ///
     /// A count within 1e-9 (relative) of a whole number is that number, so that
@@ -58,6 +59,7 @@ impl Scene {
         let close = (count - whole).abs() <= 1e-9 * whole;
         if close && whole > 0.0 { whole } else { libm::ceil(count).max(1.0) }
     }
+    // ANCHOR_END: step_count
 
     /// Numbers of particles, nodes and time steps, before anything is built.
     pub fn sizes(&self) -> (f64, f64, f64) {

@@ -8,6 +8,7 @@ use crate::exact::Exact;
 use crate::fault::Fault;
 use crate::grid::Grid;
 use crate::history::{csv, shortest};
+use crate::rows::{self, Rows};
 use crate::scene::Scene;
 use nalgebra::SVector;
 use std::io::Read;
@@ -24,33 +25,21 @@ impl Points {
     ///
     /// Errors: [`Fault::Points`] with the line.
     pub fn read(name: &str, input: impl Read, layouts: &[&[&str]]) -> Result<Self, Fault> {
-        let fault = |line: u64, problem: String, allowed: String| Fault::Points {
-            path: name.to_string(),
-            line,
-            problem,
-            allowed,
-        };
-        let allowed = || {
-            let names: Vec<String> = layouts.iter().map(|layout| layout.join(",")).collect();
-            format!("a header line with the columns {}", names.join(" or "))
-        };
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(input);
-        let header = reader.headers().map_err(|e| fault(1, e.to_string(), allowed()))?.clone();
+        let names: Vec<String> = layouts.iter().map(|layout| layout.join(",")).collect();
+        let wanted = format!("a header line with the columns {}", names.join(" or "));
+        let text = rows::text(name, input)?;
+        let mut lines = Rows::of(name, &text, wanted)?;
+        let header = lines.header.clone();
         let find = |layout: &&&[&str]| {
             layout.len() == header.len() && layout.iter().all(|c| header.iter().any(|h| h == *c))
         };
         let Some(layout) = layouts.iter().find(find) else {
             let found: Vec<&str> = header.iter().collect();
-            let problem = format!("the columns are `{}`", found.join(","));
-            return Err(fault(1, problem, allowed()));
+            let problem = format!("the columns are `{}`", rows::brief(&found.join(",")));
+            return Err(lines.no_header(problem));
         };
         let mut rows = Vec::new();
-        for record in reader.into_records() {
-            let record = record.map_err(|error| {
-                let line = error.position().map_or(0, csv::Position::line);
-                fault(line, error.to_string(), format!("{} numbers in each line", layout.len()))
-            })?;
-            let line = record.position().map_or(0, csv::Position::line);
+        while let Some((line, record)) = lines.next_row()? {
             let mut row = Vec::new();
             for column in *layout {
                 let at = header.iter().position(|h| h == *column).unwrap_or(0);
@@ -58,8 +47,8 @@ impl Points {
                 match text.parse::<f64>() {
                     Ok(x) if x.is_finite() => row.push(x),
                     _ => {
-                        let problem = format!("`{text}` is not a value of {column}");
-                        return Err(fault(line, problem, "a finite number".to_string()));
+                        let problem = format!("`{}` is not a value of {column}", rows::brief(text));
+                        return Err(lines.fault(line, problem, "a finite number".to_string()));
                     }
                 }
             }

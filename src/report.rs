@@ -28,6 +28,24 @@ const SERIES: &str = "particles.pvd";
 /// Files of every complete run, besides one SVG for each probe.
 const FILES: [&str; 4] = ["history.csv", "particles.csv", "summary.csv", "cost.csv"];
 
+/// The predicted limit of Δt (s); `None` where it cannot be predicted, and the scene
+/// breaks down by its own name.
+///
+/// Errors: [`Fault::Unstable`] for a scene whose Δt is above it, unless it allows that.
+pub fn stable(scene: &Scene) -> Result<Option<f64>, Fault> {
+    let Ok(limit) = stability::predicted(scene, 0.0) else {
+        return Ok(None);
+    };
+    if scene.time.end / scene.sizes().2 <= limit * CERTAIN || scene.time.allow_unstable {
+        return Ok(Some(limit));
+    }
+    Err(Fault::Unstable {
+        courant: scene.courant_number(),
+        largest: scene.courant_number_of(limit),
+        singular: scene.mass == Mass::Consistent && scene.grid.particles_per_cell.contains(&1),
+    })
+}
+
 /// Runs `scene` and writes its results into `dir`; returns the summary.
 ///
 /// A complete run leaves `history.csv`, `particles.csv`, `summary.csv`,
@@ -42,19 +60,7 @@ pub fn run_into(
     scene: &Scene,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Vec<Line>, Fault> {
-    let limit = stability::predicted(scene, 0.0);
-    let dt = scene.time.end / scene.sizes().2;
-    match limit {
-        Ok(limit) if dt > limit * CERTAIN && !scene.time.allow_unstable => {
-            return Err(Fault::Unstable {
-                courant: scene.courant_number(),
-                largest: scene.courant_number_of(limit),
-                singular: scene.mass == Mass::Consistent
-                    && scene.grid.particles_per_cell.contains(&1),
-            });
-        }
-        _ => {} // what cannot be predicted breaks down by its own name
-    }
+    let limit = stable(scene)?;
     prepare(dir)?;
     free_names(dir, scene)?;
     let start = Instant::now();
@@ -63,7 +69,7 @@ pub fn run_into(
         Err(stopped) => return Err(broken(dir, scene, *stopped)?),
     };
     let mut lines = summary::lines(scene, &outcome, start.elapsed().as_secs_f64());
-    if let Ok(limit) = limit.map(|limit| limit.min(f64::MAX)) {
+    if let Some(limit) = limit.map(|limit| limit.min(f64::MAX)) {
         let line = |quantity: &str, value, unit| Line { quantity: quantity.into(), value, unit };
         lines.push(line("critical_time_step", limit, "s"));
         lines.push(line("fraction_of_critical", outcome.dt / limit, "1"));

@@ -43,13 +43,14 @@ pub const COLUMNS: [&str; 7] = ["k", "step", "symbol", "index", "node", "compone
 
 /// Symbols in the paper's order, with the equation, what it is, and the place in the
 /// book.
-pub const SYMBOLS: [(&str, &str, &str); 28] = [
+pub const SYMBOLS: [(&str, &str, &str); 29] = [
+    ("dt", "T/n", "algorithm.html#time-step"),
     ("N_Ip", "(31) or the basis at hand", "basis.html"),
     ("grad_N_Ip", "(35) or the basis at hand", "basis.html"),
     ("lambda", "(37)", "local-max-ent.html"),
     ("m_I", "(13)", "weak-form.html#eq-13"),
-    ("p_I", "step 3", "algorithm.html#step-3"),
-    ("v_I", "step 4", "algorithm.html#step-4"),
+    ("p_I", "the mapped momentum", "weak-form.html"),
+    ("v_I", "the velocity of the nodes", "weak-form.html"),
     ("a_I", "(26) mapped", "time-integration.html#eq-26"),
     ("d_eps_p", "(16)", "weak-form.html#eq-16"),
     ("rho_p", "(17)", "weak-form.html#eq-17"),
@@ -57,9 +58,9 @@ pub const SYMBOLS: [(&str, &str, &str); 28] = [
     ("f_int_I", "(14)", "weak-form.html#eq-14"),
     ("f_ext_I", "(15)", "weak-form.html#eq-15"),
     ("f_I", "(18)", "weak-form.html#eq-18"),
-    ("p_I_advanced", "step 8", "algorithm.html#step-8"),
-    ("v_p", "(19) or the scheme's own", "weak-form.html#eq-19"),
-    ("x_p", "(19) or the scheme's own", "weak-form.html#eq-19"),
+    ("p_I_advanced", "the advanced momentum", "time-integration.html"),
+    ("x_p", "(19) or the scheme's own", "time-integration.html"),
+    ("v_p", "(19) or the scheme's own", "time-integration.html"),
     ("x_I", "OTM, step 2", "otm.html"),
     // Kernels by themselves, level 0 of the conformance kit.
     ("E", "what is given", "governing-equations.html#eq-3"),
@@ -75,6 +76,9 @@ pub const SYMBOLS: [(&str, &str, &str); 28] = [
     ("u", "(59) integrated", "riemann.html#eq-59"),
 ];
 
+/// Symbols that belong to a particle and a node; all others leave the node out.
+pub const PAIRS: [&str; 2] = ["N_Ip", "grad_N_Ip"];
+
 /// Writes entries of one step of one time step.
 #[derive(Default)]
 pub struct Recorder {
@@ -88,6 +92,20 @@ impl Recorder {
     pub fn at(&mut self, k: usize, step: usize) -> &mut Self {
         (self.k, self.step) = (k, step);
         self
+    }
+
+    /// That what was written down since the first `checked` entries are numbers; how
+    /// many there are now.
+    fn all_finite(&self, checked: usize, moment: Moment) -> Result<usize, Breakdown> {
+        let new = &self.entries[checked..];
+        let Some(entry) = new.iter().find(|entry| !entry.value.is_finite()) else {
+            return Ok(self.entries.len());
+        };
+        let (symbol, index) = (entry.symbol, entry.index);
+        Err(match symbol.ends_with("_I") || symbol.starts_with("p_I") {
+            true => Breakdown::NodeNotFinite { node: index, moment, symbol },
+            false => Breakdown::NotFinite { particle: index, moment, symbol },
+        })
     }
 
     fn number(&mut self, symbol: &'static str, index: usize, component: usize, value: f64) {
@@ -173,6 +191,31 @@ impl Recorder {
     }
 }
 
+/// That a trace of `steps` steps has an end in sight.
+///
+/// Errors: [`Fault::Argument`] for more steps than the scene has, or more numbers than
+/// a trace may hold.
+pub fn affordable(scene: &Scene, steps: usize) -> Result<(), Fault> {
+    let (particles, nodes, all_steps) = scene.sizes();
+    let refuse =
+        |problem: String, allowed| Err(Fault::Argument { argument: "--steps", problem, allowed });
+    if steps as f64 > all_steps {
+        let problem = format!("{steps} steps, and the scene has {all_steps}");
+        return refuse(problem, "a whole number up to the number of steps of the scene");
+    }
+    let D = scene.dimension() as f64;
+    let of_particle = scene.pairs_per_particle() * (1.0 + D) + 3.0 * D + 2.0 * D * D + 1.0;
+    let numbers = (steps as f64 + 1.0) * (particles * of_particle + nodes * (1.0 + 5.0 * D));
+    if numbers > MOST_NUMBERS {
+        let problem = format!("{steps} steps of this scene make {numbers:.0e} numbers");
+        return refuse(problem, "so many steps that a trace has 30 million numbers at most");
+    }
+    Ok(())
+}
+
+/// Some gigabytes.
+const MOST_NUMBERS: f64 = 3e7;
+
 /// Runs the first `steps` steps of a scene and returns everything that they made.
 ///
 /// Errors: [`Breakdown`].
@@ -192,6 +235,7 @@ pub fn trace_in<const D: usize>(
     let model = Model::<D>::of(scene);
     let mut state = model.initial_state(scene);
     let mut recorder = Recorder::default();
+    recorder.numbers("dt", &[model.dt]);
     recorder.vectors("x_p", &state.particle.x);
     recorder.vectors("v_p", &state.particle.v);
     let cost = &mut Cost::default();
@@ -206,6 +250,7 @@ pub fn trace_in<const D: usize>(
         }
         Method::Mpm(_) => time::start(&mut state, &model, cost)?,
     }
+    let mut checked = recorder.all_finite(0, Moment::START)?;
     for k in 1..=steps {
         recorder.k = k;
         let moment = Moment { step: k, time: k as f64 * model.dt };
@@ -224,7 +269,7 @@ pub fn trace_in<const D: usize>(
                 Integrator::GeneralizedAlpha { rho_b } => alpha(r, s, m, rho_b, moment, cost)?,
             },
         }
-        finite(&state.particle, moment)?;
+        checked = recorder.all_finite(checked, moment)?;
     }
     Ok((recorder.entries, state))
 }
@@ -425,22 +470,23 @@ pub fn hex(x: f64) -> String {
 
 /// Reads a decimal number, or one in hexadecimal as [`hex`] writes it.
 pub fn number(text: &str) -> Option<f64> {
-    let (sign, rest) = match text.strip_prefix('-') {
-        Some(rest) => (-1.0, rest),
+    let (sign, rest) = match text.strip_prefix(['-', '+']) {
+        Some(rest) if text.starts_with('-') => (-1.0, rest),
+        Some(rest) => (1.0, rest),
         None => (1.0, text),
     };
-    let Some(rest) = rest.strip_prefix("0x") else {
+    let Some(rest) = rest.strip_prefix("0x").or_else(|| rest.strip_prefix("0X")) else {
         return text.parse().ok();
     };
-    let (mantissa, exponent) = rest.split_once('p')?;
+    let (mantissa, exponent) = rest.split_once(['p', 'P'])?;
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let digits = format!("{whole}{fraction}");
-    if digits.is_empty() || digits.len() > 15 {
+    if digits.is_empty() || digits.len() > 15 || digits.starts_with('+') {
         return None;
     }
     let mantissa = u64::from_str_radix(&digits, 16).ok()? as f64;
-    let exponent: i32 = exponent.parse().ok()?;
-    Some(sign * libm::ldexp(mantissa, exponent - 4 * fraction.len() as i32))
+    let exponent = exponent.parse::<i32>().ok()?.checked_sub(4 * fraction.len() as i32)?;
+    Some(sign * libm::ldexp(mantissa, exponent))
 }
 
 /// A trace as CSV; numbers in the shortest decimal that reads back the same, or in

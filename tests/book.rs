@@ -278,7 +278,7 @@ fn surviving_mutants_are_explained() {
     let scores = records("data/mutants/scores.csv");
     for row in &scores {
         let count = |at: usize| row[at].parse::<usize>().unwrap();
-        assert_eq!(count(1), (2..=5).map(count).sum(), "{row:?}");
+        assert_eq!(count(1), (2..=5).map(count).sum::<usize>(), "{row:?}");
         // A line may hold the same mutant more than once.
         let (rows, missed) = (survived.remove(&row[0]).unwrap_or(0), count(5));
         assert!(rows <= missed && (rows > 0) == (missed > 0), "{row:?}");

@@ -179,7 +179,7 @@ fn bad_points() {
         ("x,t\n0,-1\n", &["-, line 2", "`-1` is not a value of t"]),
         ("x,t\n0,1e300\n", &["-, line 2", "`1e300` is not a value of t", "from 0 to "]),
         ("x,t\n0,NaN\n", &["-, line 2", "NaN"]),
-        ("x,t\n0,0,0\n", &["-, line 2", "2 numbers"]),
+        ("x,t\n0,0,0\n", &["-, line 2", "3 cells instead of 2"]),
         ("", &["-, line 1", "columns x,t"]),
     ];
     for (points, words) in cases {
@@ -416,4 +416,57 @@ fn breakdown_leaves_the_grid() {
     let output = program(&dir, &["run", FLIGHT, "--out", "o", "--set", "time.end=0.5"]);
     let words = ["particle 19 left the grid at step ", "t = ", "grid.beyond", "history.failed.csv"];
     assert_fails(&output, 1, &words);
+}
+
+/// Traces and comparisons that make no sense are refused before anything is written.
+#[test]
+fn bad_traces() {
+    let dir = directory("bad-traces");
+    let mine = dir.join("mine.toml");
+    fs::copy(DYKA, &mine).unwrap();
+    let before = fs::read(&mine).unwrap();
+    let run = |arguments: &[&str]| program(&dir, arguments);
+    let trace = |more: &[&str]| run(&[&["trace", "mine.toml"], more].concat());
+    for (arguments, words) in [
+        (&["--out", "mine.toml"][..], "is the scene itself"),
+        (&["--out", "."], "is a directory"),
+        (&["--out", "/dev/null"], "not a regular file"),
+        (&["--steps", "321"], "the scene has 320"),
+        (&["--steps", "320", "--set", "grid.cells=40000", "--set", "time.cfl=500"], "30 million"),
+        (&["--set", "time.cfl=1.75"], "time step is too large"),
+    ] {
+        assert_fails(&trace(arguments), 2, &[words]);
+    }
+    // Numbers that are none: of a node, of a particle.
+    let loads = ["--steps", "0", "--set", "body_force.acceleration=1e308", "--out", "nan.csv"];
+    assert_fails(&trace(&loads), 1, &["f_ext_I of node 0 is not a finite number at step 0"]);
+    let light = ["body.density=1e-300", "body.youngs_modulus=1e-300", "traction.right=1e308"];
+    let light: Vec<&str> = light.iter().flat_map(|set| ["--set", set]).collect();
+    assert_fails(&trace(&[&["--steps", "0"], &light[..]].concat()), 1, &["v_p of particle 76"]);
+    assert_eq!(files(&dir), ["mine.toml"]);
+    assert_eq!(fs::read(&mine).unwrap(), before);
+
+    let written = trace(&["--out", "ref.csv", "--set", "grid.cells=4"]);
+    assert!(written.status.success(), "{}", text(&written.stderr));
+    for (arguments, words) in [
+        (&["ref.csv", "ref.csv", "--rtol", "nan"][..], "a number from 0 up to and below 1"),
+        (&["ref.csv", "ref.csv", "--atol=-1"], "a number from 0 up to and below 1"),
+        (&["-", "-"], "standard input cannot be both"),
+        (&["ref.csv", "."], "cannot read ."),
+        (&["ref.csv", "mine.toml"], "mine.toml, line"),
+        (&["ref.csv", "none.csv"], "cannot read none.csv"),
+    ] {
+        assert_fails(&run(&[&["check"], arguments].concat()), 2, &[words]);
+    }
+    let mut port = fs::read_to_string(dir.join("ref.csv")).unwrap();
+    port += "1,9,v_p,99,,0,1\n";
+    let line = format!("port.csv, line {}: there is v_p of k = 1", port.lines().count());
+    fs::write(dir.join("port.csv"), &port).unwrap();
+    assert_fails(&run(&["check", "ref.csv", "port.csv"]), 2, &[&line]);
+    // A difference: 1, on standard error, with the line.
+    let port = port.replace("\n0,9,v_p,0,,0,0\n", "\n0,9,v_p,0,,0,2\n");
+    fs::write(dir.join("port.csv"), &port).unwrap();
+    let at = port.lines().position(|line| line == "0,9,v_p,0,,0,2").unwrap() + 1;
+    let words = ["first difference: k = 0, step 9", &format!("2.0 in line {at}")];
+    assert_fails(&run(&["check", "ref.csv", "port.csv"]), 1, &words);
 }

@@ -78,11 +78,11 @@ fn reference(sets: &[&str], steps: usize) -> Vec<Entry> {
 #[test]
 fn check_finds_the_first_difference() {
     let all = reference(&["grid.cells=4"], 3);
-    let report = compare(&all, &all, USUAL).unwrap();
+    let report = compare(&all, &all.clone().into(), USUAL, false).unwrap();
     assert_eq!((report.compared, report.divergence, report.missing.len()), (all.len(), None, 0));
     // A part agrees, and the rest is named.
     let part: Vec<Entry> = all.iter().filter(|e| e.symbol == "v_p").cloned().collect();
-    let report = compare(&all, &part, USUAL).unwrap();
+    let report = compare(&all, &part.into(), USUAL, false).unwrap();
     assert!(report.divergence.is_none() && report.missing.contains_key("sigma_p"));
     assert!(report.text().contains("not compared") && report.text().contains("x_p ("));
     // Two errors: the one that comes first in the steps is reported, not in the file.
@@ -95,7 +95,7 @@ fn check_finds_the_first_difference() {
     wrong[late].value *= 1.5;
     wrong[early].value *= 1.0 + 1e-6;
     wrong.reverse();
-    let report = compare(&all, &wrong, USUAL).unwrap();
+    let report = compare(&all, &wrong.clone().into(), USUAL, false).unwrap();
     let divergence = report.divergence.clone().unwrap();
     assert_eq!((divergence.reference.k, divergence.reference.symbol), (2, "sigma_p"));
     assert!(divergence.ulps > 1_000_000);
@@ -105,12 +105,27 @@ fn check_finds_the_first_difference() {
     }
     // Within the tolerance nothing is found.
     let loose = Tolerance { relative: 1e-5, ..USUAL };
-    assert_eq!(compare(&all, &wrong, loose).unwrap().divergence.unwrap().reference.symbol, "m_I");
+    assert_eq!(
+        compare(&all, &wrong.clone().into(), loose, false)
+            .unwrap()
+            .divergence
+            .unwrap()
+            .reference
+            .symbol,
+        "m_I"
+    );
+    // Also in a reference whose lines are in another order.
+    let mut reversed = all.clone();
+    reversed.reverse();
+    assert_eq!(
+        compare(&reversed, &wrong.into(), USUAL, false).unwrap().divergence,
+        Some(divergence)
+    );
     // What cannot be compared.
     let mut more = all.clone();
     more[0].index = 99;
-    assert!(matches!(compare(&all, &more, USUAL), Err(Fault::Argument { .. })));
-    assert!(matches!(compare(&all, &[], USUAL), Err(Fault::Argument { .. })));
+    assert!(matches!(compare(&all, &more.into(), USUAL, false), Err(Fault::Alone { .. })));
+    assert!(matches!(compare(&all, &vec![].into(), USUAL, false), Err(Fault::Alone { .. })));
     for (text, words) in [
         ("k,step,symbol,index,component,value\n", "no column `node`"),
         ("k,step,symbol,index,node,component,value\n0,0,x_p,0,,0,NaN\n", "`NaN`"),
@@ -120,9 +135,147 @@ fn check_finds_the_first_difference() {
             "k,step,symbol,index,node,component,value\n0,0,x_p,0,,0,1\n0,0,x_p,0,,0,1\n",
             "stands in line 2",
         ),
-        ("k,step,symbol,index,node,component,value\n0,0,x_p,0\n", "line 2"),
+        ("k,step,symbol,index,node,component,value\n0,0,x_p,0\n", "line 2: 4 cells instead of 7"),
+        ("k,step,symbol,index,node,component,value,k\n", "`k` is there twice"),
+        ("k,step,symbol,index,node,component,value\r\n\r\n0,0,x_p,0,,0,x\r\n", "line 3: `x`"),
+        ("k,step,symbol,index,node,component,value\r0,0,x_p,0,,0,1\r0,0,x_p,1,,0,x", "line 3: `x`"),
+        (
+            "k,step,symbol,index,node,component,value\n\n0,0,x_p,0,,0,\"1\n2\"\n",
+            "line 3: the quoted",
+        ),
+        ("k,step,symbol,index,node,component,value\n0,3,m_I,0,0,0,1\n", "m_I is not a pair"),
+        (
+            "k,step,symbol,index,node,component,value\n0,2,N_Ip,0,,0,1\n",
+            "`` is not a value of node",
+        ),
+        (
+            "k,step,symbol,index,node,component,value\n0,0,x_p,0,,0,0x1.8p-2147483648\n",
+            "`0x1.8p-2147",
+        ),
     ] {
         let fault = check::read("port.csv", text.as_bytes()).unwrap_err().to_string();
         assert!(fault.contains(words) && fault.contains("port.csv"), "{fault}");
     }
+}
+
+/// Of a symbol in a time step all numbers must be there, and no others; nodes that a
+/// particle does not see are 0 on both sides. What differs is said first.
+#[test]
+fn check_wants_whole_symbols() {
+    let all = reference(&["grid.cells=4"], 2);
+    let without = |skip: &dyn Fn(&Entry) -> bool| -> check::Printed {
+        all.iter().filter(|e| !skip(e)).cloned().collect::<Vec<Entry>>().into()
+    };
+    let with = |more: &[Entry]| -> check::Printed { [&all[..], more].concat().into() };
+    let seen = all.iter().find(|e| e.k == 2 && e.symbol == "N_Ip" && e.value > 0.1).unwrap();
+    let refused = |theirs: &check::Printed, words: &str| {
+        let fault = compare(&all, theirs, USUAL, false).unwrap_err().to_string();
+        assert!(fault.contains(words) && fault.contains("--part"), "{fault}");
+    };
+    // A number in the middle is missing: refused, unless a part is asked for.
+    let gap = without(&|e| (e.k, e.symbol, e.index) == (2, "m_I", 3));
+    refused(&gap, "no m_I of k = 2, step 3, index 3, component 0");
+    let report = compare(&all, &gap, USUAL, true).unwrap();
+    assert_eq!((report.compared, report.missing["m_I"]), (all.len() - 1, 1));
+    assert!(report.text().starts_with(&format!("{} of {} num", all.len() - 1, all.len())));
+    // A node that the particle sees is not there: its N is 0.
+    let blind = without(&|e| e == seen);
+    let report = compare(&all, &blind, USUAL, false).unwrap();
+    let found = report.divergence.unwrap();
+    assert_eq!((&found.reference, found.theirs), (seen, 0.0));
+    // One that it does not see may be there with 0.
+    let far = Entry { node: Some(99), value: 0.0, ..seen.clone() };
+    let report = compare(&all, &with(std::slice::from_ref(&far)), USUAL, false).unwrap();
+    assert_eq!((report.compared, report.divergence), (all.len() + 1, None));
+    // With a value it is the first difference in the paper's order, part or not.
+    let wrong = [3, 1].map(|index| Entry { index, value: 0.5, ..far.clone() });
+    for part in [false, true] {
+        let report = compare(&all, &with(&wrong), USUAL, part).unwrap();
+        assert_eq!(report.divergence.unwrap().reference.index, 1);
+    }
+    // A particle or component that is not there.
+    refused(&with(&[Entry { index: 99, ..far.clone() }]), "there is N_Ip of k = 2");
+    refused(&with(&[Entry { component: 7, ..far.clone() }]), "component 7");
+    // What is there too much is counted, and a difference comes before it.
+    let mut more = Entry { index: 99, ..seen.clone() };
+    more.value *= 2.0;
+    let report = compare(&all, &with(&[more.clone()]), USUAL, true).unwrap();
+    assert_eq!((report.extra, report.divergence.is_none()), (1, true));
+    assert!(report.text().contains("the reference has none: 1"));
+    let report = compare(&all, &with(&[more, wrong[0].clone()]), USUAL, false).unwrap();
+    assert!(report.divergence.is_some());
+    // Where nothing of a time step before the difference was compared, that is said.
+    let mut late = all.clone();
+    late.retain(|e| e.k != 1);
+    late.iter_mut().filter(|e| e.k == 2 && e.symbol == "v_p").for_each(|e| e.value += 1.0);
+    let report = compare(&all, &late.into(), USUAL, false).unwrap();
+    assert!(report.text().contains("nothing of k = 1 was compared"), "{}", report.text());
+}
+
+/// What is likely is said of the right mistakes, and of no others.
+#[test]
+fn check_names_the_usual_cause() {
+    let linear = reference(&["grid.cells=4"], 2);
+    let lme = reference(&["grid.cells=4", "basis.kind=lme", "basis.gamma=0.8"], 2);
+    let said = |all: &[Entry], change: &dyn Fn(&mut Entry)| {
+        let mut theirs = all.to_vec();
+        theirs.iter_mut().for_each(change);
+        compare(all, &theirs.into(), USUAL, true).unwrap().text()
+    };
+    let turned = |symbol: &'static str| {
+        move |e: &mut Entry| {
+            if e.symbol == symbol {
+                e.value = -e.value;
+            }
+        }
+    };
+    let shifted = |step: usize| {
+        move |e: &mut Entry| {
+            if (e.symbol, e.step) == ("v_p", step) && e.k == 2 {
+                e.index += 1;
+            }
+        }
+    };
+    let scaled = |symbol: &'static str, step: usize| {
+        move |e: &mut Entry| {
+            if (e.symbol, e.step) == (symbol, step) {
+                e.value *= 1.5;
+            }
+        }
+    };
+    let nodes_from_one = |e: &mut Entry| e.node = e.node.map(|node| node + 1);
+    let kept = |symbol: &'static str| {
+        move |e: &mut Entry| {
+            if e.symbol == symbol && e.index == 0 {
+                e.value += 1.0;
+            }
+        }
+    };
+    type Change<'a> = Box<dyn Fn(&mut Entry) + 'a>;
+    let cases: [(&[Entry], Change, &str); 16] = [
+        (&linear, Box::new(turned("grad_N_Ip")), "the sign of ∇N"),
+        (&lme, Box::new(turned("lambda")), "the sign of λ"),
+        (&linear, Box::new(turned("f_int_I")), "f_int = −Σ σ ∇N m/ρ"),
+        (&linear, Box::new(shifted(1)), "the numbering is off by one"),
+        (&linear, Box::new(shifted(9)), "the numbering is off by one"),
+        (&linear, Box::new(nodes_from_one), "nodes are numbered off by one"),
+        (&lme, Box::new(nodes_from_one), "nodes are numbered off by one"),
+        (&linear, Box::new(scaled("N_Ip", 2)), "wherever the particle stands"),
+        (&lme, Box::new(scaled("N_Ip", 2)), "cut-off"),
+        (&linear, Box::new(scaled("dt", 0)), "Δt = T/n"),
+        (&linear, Box::new(scaled("x_p", 0)), "the start: h = L/cells"),
+        (&linear, Box::new(scaled("x_p", 1)), "(27) moves with the nodes"),
+        (&linear, Box::new(scaled("v_p", 1)), "(28) is half a step"),
+        (&linear, Box::new(scaled("v_p", 9)), "(29) is half a step"),
+        (&linear, Box::new(kept("f_I")), "a fixed node keeps"),
+        (&linear, Box::new(kept("d_eps_p")), "at k = 0 Δt is 0"),
+    ];
+    for (all, change, words) in cases {
+        let text = said(all, &*change);
+        assert!(text.contains(words), "{words}:\n{text}");
+    }
+    // No node is fixed in a bar that flies: nothing of the kind is said.
+    let flight = trace::trace(&scene(FREE_FLIGHT, &[]), 1).unwrap();
+    let text = said(&flight, &kept("f_I"));
+    assert!(text.contains("f_I of (18)") && !text.contains("fixed"), "{text}");
 }

@@ -1,14 +1,14 @@
 """A port of the bar in plain Python: 1D, linear or local max-ent basis, lumped mass,
 Newmark's predictor-corrector. It prints the columns that `lme-mpm check` reads:
 
-    python3 port.py trace CELLS PARTICLES_PER_CELL CFL STEPS linear|GAMMA
+    python3 port.py trace CELLS PARTICLES_PER_CELL CFL STEPS linear|GAMMA [NAME=VALUE ...]
     python3 port.py errors CELLS PARTICLES_PER_CELL CFL STEPS linear|GAMMA
     python3 port.py basis FILE LENGTH CELLS linear|GAMMA
     python3 port.py law|measure|exact FILE
 
-The first runs the bar, the second measures the errors of its two histories; the others
-answer a file of level 0 of the conformance kit, of which they read what is given, its
-step 0. With `bug=NAME` at the end it makes one
+The first runs the bar, with other numbers where they are given; the second measures the
+errors of its two histories; the others answer a file of level 0 of the conformance kit,
+of which they read what is given, its step 0. With `bug=NAME` at the end it makes one
 mistake on purpose, of those that ports make; the names are in the code, each where it
 is made.
 """
@@ -17,11 +17,27 @@ import math
 import sys
 
 what, *arguments = sys.argv[1:]
-bug = arguments.pop()[4:] if arguments[-1].startswith("bug=") else ""
+given = dict(word.split("=") for word in arguments if "=" in word)
+arguments = [word for word in arguments if "=" not in word]
+bug = given.pop("bug", "")
 
-# The bar: fixed at x = 0, free at x = L, one cell of the grid beyond.
-L, rho0, E, v0, end = 0.1333, 7833.0, 200e9, 5.0, 1.05521074812570e-4
-c, Z = math.sqrt(E / rho0), math.sqrt(E * rho0)
+# The bar: fixed at x = 0 (or not), free at x = L, one cell of the grid beyond; thrown to
+# the right from three quarters of it on.
+bar = {"length": 0.1333, "density": 7833.0, "modulus": 200e9, "poisson": 0.0, "speed": 5.0}
+bar |= {"from": 0.75 * 0.1333, "end": 1.05521074812570e-4, "fixed": 1.0}
+bar |= {name: float(value) for name, value in given.items()}
+L, rho0, v0 = bar["length"], bar["density"], bar["speed"]
+
+
+def lame(young, nu):
+    """Both constants of (3)."""
+    twice = 1 if bug == "plane-stress" else 2
+    return young * nu / ((1 + nu) * (1 - twice * nu)), young / (2 * (1 + nu))
+
+
+# Uniaxial strain: its modulus is lambda + 2 mu.
+M = lame(bar["modulus"], bar["poisson"])[0] + 2 * lame(bar["modulus"], bar["poisson"])[1]
+c, Z = math.sqrt(M / rho0), math.sqrt(M * rho0)
 
 
 def row(k, step, symbol, index, node, component, value):
@@ -96,16 +112,17 @@ def shape_of(x, h, nodes, basis):
 
 
 def law(given):
-    """(3) in plane strain from no stress, (17) from rho = 1, and the strain energy."""
+    """(3) from no stress, (17) from rho = 1, and the strain energy; in one dimension
+    uniaxial strain, in two plane strain."""
     for k, case in given.items():
-        young, nu, (xx, xy, yx, yy) = case["E"][0][0], case["nu"][0][0], case["d_eps_p"][0]
-        lame = young * nu / ((1 + nu) * (1 - (1 if bug == "plane-stress" else 2) * nu))
-        mu, trace = young / (2 * (1 + nu)), xx + yy
-        sigma = [lame * trace + 2 * mu * xx, 2 * mu * xy, 2 * mu * yx, lame * trace + 2 * mu * yy]
+        (first, mu), strain = lame(case["E"][0][0], case["nu"][0][0]), case["d_eps_p"][0]
+        diagonal = (0,) if len(strain) == 1 else (0, 3)
+        trace = sum(strain[i] for i in diagonal)
+        sigma = [2 * mu * e + (first * trace if i in diagonal else 0) for i, e in enumerate(strain)]
         row(k, 6, "rho_p", 0, "", 0, 1 / (1 + trace))
         for i, value in enumerate(sigma):
             row(k, 6, "sigma_p", 0, "", i, value)
-        energy = 0.5 * sum(s * e for s, e in zip(sigma, (xx, xy, yx, yy)))
+        energy = 0.5 * sum(s * e for s, e in zip(sigma, strain))
         row(k, 6, "W_p", 0, "", 0, energy)
 
 
@@ -144,7 +161,7 @@ def invariant(family, x, s):
         s, x, family = s - to_end, (0.0 if family == 1 else L), 3 - family
 
 
-def bar(x, t):
+def exact_bar(x, t):
     """Appendix A: velocity, stress and displacement of the bar."""
     (one, way_one), (two, way_two) = invariant(1, x, c * t), invariant(2, x, c * t)
     return one + two, Z * (two - one), (way_one + way_two) / c
@@ -152,7 +169,7 @@ def bar(x, t):
 
 def exact(given):
     places, times = given["0"]["x"], given["0"]["t"]
-    fields = [bar(places[n][0], times[n][0]) for n in places]
+    fields = [exact_bar(places[n][0], times[n][0]) for n in places]
     for n, symbol in enumerate(("v", "sigma", "u")):
         show(0, 1, symbol, [field[n] for field in fields])
 
@@ -183,10 +200,10 @@ def run(cells, per_cell, cfl, steps, basis):
     the last particle and the stress of the one nearest to 3L/4, each with its exact value.
     """
     h, nodes = L / cells, cells + 2
-    dt = end / max(1, math.ceil(end * c / (cfl * h) * (1 - 1e-9)))
+    dt = bar["end"] / max(1, math.ceil(bar["end"] * c / (cfl * h) * (1 - 1e-9)))
     x = [(n // per_cell + (n % per_cell + 0.5) / per_cell) * h for n in range(cells * per_cell)]
     m = [rho0 * (h if bug == "mass-of-the-whole-cell" else h / per_cell)] * len(x)
-    v = [v0 if 0.75 * L <= y else 0.0 for y in x]
+    v = [v0 if bar["from"] <= y else 0.0 for y in x]
     rho = [rho0] * len(x)
     sigma = [0.0] * len(x)
     d_eps = [0.0] * len(x)
@@ -196,11 +213,12 @@ def run(cells, per_cell, cfl, steps, basis):
     shapes = [[] for _ in P]
     room = nodes + 1  # one more, for a node numbered wrongly
     mI, pI, fI = [0.0] * room, [0.0] * room, [0.0] * room
+    show(0, 0, "dt", [dt])
     show(0, 0, "x_p", x)
     show(0, 0, "v_p", v)
     for k in range(steps + 1):
         step = dt if k else 0.0
-        # 1: predictor, with the nodal values of the step before.
+        # 1: predictor, with N, f_I and the advanced p_I of the step before.
         for p in P:
             vel = sum(pI[I] / mI[I] * N for I, N, _ in shapes[p] if mI[I] > 0)
             acc = sum(fI[I] / mI[I] * N for I, N, _ in shapes[p] if mI[I] > 0)
@@ -224,21 +242,28 @@ def run(cells, per_cell, cfl, steps, basis):
         show(k, 3, "m_I", mI[:nodes])
         show(k, 3, "p_I", pI[:nodes])
         # 4: the fixed node, and nodal velocities.
-        if bug != "fixed-node-moves":
+        if bar["fixed"] and bug != "fixed-node-moves":
             pI[0] = 0.0
         vI = [q / mass if mass > 0 else 0.0 for q, mass in zip(pI, mI)]
         show(k, 4, "v_I", vI[:nodes])
         # 5 and 6: strain, density, stress.
         before = d_eps[:]
         for p in P:
-            d_eps[p] = step * sum(vI[I] * slope for I, _, slope in shapes[p])
+            # A node without mass moves with the others: their velocity is taken off.
+            moving = [(I, slope) for I, _, slope in shapes[p] if mI[I] > 0]
+            rest = vI[moving[0][0]]
+            if bug == "node-without-mass-stands":
+                moving, rest = [(I, slope) for I, _, slope in shapes[p]], 0.0
+            d_eps[p] = step * sum((vI[I] - rest) * slope for I, slope in moving)
         show(k, 5, "d_eps_p", d_eps)
         for p in P:
             rho[p] /= 1 + (before[p] if bug == "density-before-strain" else d_eps[p])
         show(k, 6, "rho_p", rho)
         old_sigma = sigma[:]
         for p in P:
-            sigma[p] += E * d_eps[p]
+            if bug == "stress-of-this-step":
+                sigma[p] = 0.0
+            sigma[p] += (bar["modulus"] if bug == "modulus-is-E" else M) * d_eps[p]
         show(k, 6, "sigma_p", sigma)
         # 7: forces.
         used = old_sigma if bug == "old-stress" else sigma
@@ -248,19 +273,23 @@ def run(cells, per_cell, cfl, steps, basis):
                 density = rho0 if bug == "first-density" else rho[p]
                 fI[I] -= (-1 if bug == "sign-of-force" else 1) * used[p] * slope * m[p] / density
         show(k, 7, "f_int_I", fI[:nodes])
-        if bug != "force-on-fixed-node":
+        if bar["fixed"] and bug != "force-on-fixed-node":
             fI[0] = 0.0
         show(k, 7, "f_I", fI[:nodes])
-        # 8: nodal momentum at the end of the step.
+        # 8: nodal momentum at the end of the step, for the next predictor.
+        mapped = pI[:]
         for I in range(room):
             pI[I] += (1.0 if bug == "step-8-as-printed" else 0.5) * fI[I] * step
         show(k, 8, "p_I_advanced", pI[:nodes])
+        if bug == "predictor-takes-mapped-momentum":
+            pI = mapped
         # 9: corrector.
         for p in P:
             table = old_shapes[p] if bug == "old-N-in-corrector" and k else shapes[p]
             v[p] += 0.5 * step * sum(fI[I] / mI[I] * N for I, N, _ in table if mI[I] > 0)
         show(k, 9, "v_p", v)
-        yield (v[-1], bar(start[-1], k * dt)[0]), (sigma[middle], bar(start[middle], k * dt)[1])
+        velocity, stress = exact_bar(start[-1], k * dt)[0], exact_bar(start[middle], k * dt)[1]
+        yield (v[-1], velocity), (sigma[middle], stress)
 
 
 if what != "errors":
