@@ -28,7 +28,7 @@ pub struct Divergence {
     /// Numbers between the two.
     pub ulps: u64,
     /// Where the likely cause is known.
-    pub cause: Option<String>,
+    pub cause: Option<&'static str>,
 }
 
 /// What a comparison found.
@@ -250,15 +250,16 @@ type Lined<'a> = (&'a Entry, Option<u64>);
 /// at a particle; and what else only `theirs` has.
 fn with_unseen_nodes<'a>(reference: &[Entry], theirs: &'a Printed) -> (Vec<Entry>, Vec<Lined<'a>>) {
     let known: HashSet<Place> = reference.iter().map(place).collect();
-    let rows: HashMap<Row, usize> = reference.iter().map(|e| (row(e), e.component)).collect();
+    let rows: HashSet<(Row, usize)> = reference.iter().map(|e| (row(e), e.component)).collect();
     let (mut all, mut extra) = (reference.to_vec(), Vec::new());
-    for (n, entry) in theirs.entries.iter().enumerate().filter(|(_, e)| !known.contains(&place(e)))
-    {
-        // The last row has the largest component.
-        match rows.get(&row(entry)).filter(|most| entry.node.is_some() && entry.component <= **most)
-        {
-            Some(_) => all.push(Entry { value: 0.0, ..entry.clone() }),
-            None => extra.push((entry, theirs.lines.get(n).copied())),
+    for (n, entry) in theirs.entries.iter().enumerate() {
+        if known.contains(&place(entry)) {
+            continue;
+        }
+        if entry.node.is_some() && rows.contains(&(row(entry), entry.component)) {
+            all.push(Entry { value: 0.0, ..entry.clone() });
+        } else {
+            extra.push((entry, theirs.lines.get(n).copied()));
         }
     }
     let order = |symbol: &str| SYMBOLS.iter().position(|known| known.0 == symbol);
@@ -304,7 +305,7 @@ impl Report {
                     true => format!("{ulps} numbers apart"),
                     false => "not of one sign".to_string(),
                 };
-                let cause = cause.as_ref().map_or(String::new(), |c| format!("  likely: {c}\n"));
+                let cause = cause.map_or(String::new(), |c| format!("  likely: {c}\n"));
                 format!(
                     "first difference: k = {}, step {}, {} of {equation}, index {}{node}, \
                      component {}\n  reference {:?}\n  theirs    {:?}{line}\n  relative \

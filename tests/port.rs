@@ -209,7 +209,7 @@ fn port_mistakes_are_found() {
     let mut line = |bug: &str, level: &str, report: Report| {
         let Some(found) = report.divergence else { panic!("{bug} was not found") };
         let Entry { k, step, symbol, .. } = found.reference;
-        let cause = found.cause.unwrap_or("–".into()).replace(',', ";");
+        let cause = found.cause.unwrap_or("–").replace(',', ";");
         writeln!(table, "{bug},{level},{k},{step},{symbol},{cause}").unwrap();
         (step, symbol)
     };

@@ -48,21 +48,18 @@ pub fn of(
     theirs: f64,
     reference: &[Entry],
     own: &HashMap<Place, f64>,
-) -> Option<String> {
+) -> Option<&'static str> {
     let all = reference.iter().map(|entry| (place(entry), entry.value)).collect();
     let traces = Traces { reference: all, theirs: own };
     let by_value = if entry.step == 0 { None } else { value_tells(entry, theirs, reference) };
-    by_value
-        .or_else(|| numbering(entry, theirs, &traces))
-        .or_else(|| match entry.node {
-            Some(_) => pair(entry, reference),
-            None => symbol_tells(entry, theirs).or_else(|| {
-                let twice = entry.value != 0.0
-                    && (near(theirs, 2.0 * entry.value) || near(theirs, 0.5 * entry.value));
-                twice.then_some("a factor of two")
-            }),
-        })
-        .map(str::to_string)
+    by_value.or_else(|| numbering(entry, theirs, &traces)).or_else(|| match entry.node {
+        Some(_) => pair(entry, reference),
+        None => symbol_tells(entry, theirs).or_else(|| {
+            let twice = entry.value != 0.0
+                && (near(theirs, 2.0 * entry.value) || near(theirs, 0.5 * entry.value));
+            twice.then_some("a factor of two")
+        }),
+    })
 }
 
 /// Causes that show in the two values: a fixed node, a sign.
