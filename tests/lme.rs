@@ -309,6 +309,9 @@ fn lme_counts_its_exponentials() {
     assert!(iterations > 1);
     // Starts that are not near enough are evaluated without being iterations.
     assert!(exponentials % 5 == 0 && exponentials >= 5 * iterations, "{exponentials}");
+    // On a node one weighs the others against it.
+    let (exponentials, iterations) = counts(0.8, &[[2.0]]);
+    assert_eq!(exponentials, 7 + iterations + 1);
     // On a side the slopes take one for each node of the next layer.
     let (exponentials, iterations) = counts(0.8, &[[1.3, 0.0]]);
     assert!(iterations > 1);
