@@ -30,7 +30,7 @@ def place(name):
 
 
 listed = subprocess.run(
-    ["cargo", "mutants", "--list"], cwd=root, capture_output=True, text=True, check=True
+    ["cargo", "mutants", "--list"], cwd=root, stdout=subprocess.PIPE, text=True, check=True
 ).stdout.splitlines()
 with open(home / "survivors.csv", newline="") as table:
     explained = {(row["file"], row["code"], row["mutant"]) for row in csv.DictReader(table)}
