@@ -7,6 +7,7 @@ mod cause;
 use crate::fault::Fault;
 use crate::rows::{self, Rows, brief};
 use crate::trace::{COLUMNS, Entry, PAIRS, SYMBOLS, number};
+use cause::Traces;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::io::Read;
 
@@ -66,6 +67,18 @@ pub struct Printed {
     pub entries: Vec<Entry>,
     /// The line of each entry; empty if they were never in a file.
     lines: Vec<u64>,
+}
+
+impl Printed {
+    /// The line of entry `n`, if it was ever in a file.
+    fn line(&self, n: usize) -> Option<u64> {
+        self.lines.get(n).copied()
+    }
+
+    fn alone(&self, line: Option<u64>, problem: String) -> Fault {
+        let line = line.map_or(String::new(), |line| format!(", line {line}"));
+        Fault::Alone { place: format!("{}{line}", self.name), problem }
+    }
 }
 
 impl From<Vec<Entry>> for Printed {
@@ -162,8 +175,8 @@ pub fn compare(
         let scale = scales.entry((entry.k, entry.symbol)).or_insert(0.0);
         *scale = scale.max(entry.value.abs());
     }
-    let own = Own::new(theirs);
-    let (reference, extra) = with_unseen_nodes(reference, theirs);
+    let (given, own) = (by_place(reference), Own::new(theirs));
+    let (reference, extra) = with_unseen_nodes(reference, &given, theirs);
     let mut report = Report {
         compared: 0,
         divergence: None,
@@ -193,21 +206,36 @@ pub fn compare(
             theirs: value,
             line: own.line(entry),
             ulps: ulps(entry.value, value),
-            cause: cause::of(entry, value, &reference, &own.values),
+            cause: cause::of(
+                entry,
+                value,
+                &reference,
+                Traces { reference: &given, theirs: &own.values },
+            ),
         });
         return Ok(report);
     }
     match (extra.first(), gap) {
-        (Some((entry, line)), _) if !part => Err(alone(theirs, entry, *line)),
-        (_, Some(entry)) if !part => Err(alone(theirs, entry, None)),
-        _ if report.compared == 0 => Err(Fault::Alone {
-            place: theirs.name.clone(),
-            problem: "it has nothing that the reference has".into(),
-        }),
+        (Some(n), _) if !part => {
+            let entry = spelled(&theirs.entries[*n]);
+            let problem = format!("there is {entry}, which the reference has not");
+            Err(theirs.alone(theirs.line(*n), problem))
+        }
+        (_, Some(entry)) if !part => {
+            let problem = format!("there is no {}, but others of its kind", spelled(entry));
+            Err(theirs.alone(None, problem))
+        }
+        _ if report.compared == 0 => {
+            Err(theirs.alone(None, "it has nothing that the reference has".into()))
+        }
         _ => Ok(report),
     }
 }
 // ANCHOR_END: compare
+
+fn by_place(entries: &[Entry]) -> HashMap<Place, f64> {
+    entries.iter().map(|entry| (place(entry), entry.value)).collect()
+}
 
 /// What a port has printed, to look things up.
 struct Own<'a> {
@@ -221,7 +249,7 @@ impl<'a> Own<'a> {
     fn new(theirs: &'a Printed) -> Self {
         let places = || theirs.entries.iter().map(place);
         Own {
-            values: theirs.entries.iter().map(|entry| (place(entry), entry.value)).collect(),
+            values: by_place(&theirs.entries),
             lines: places().zip(theirs.lines.iter().copied()).collect(),
             rows: theirs.entries.iter().map(row).collect(),
             symbols: theirs.entries.iter().map(|e| (e.k, e.step, e.symbol)).collect(),
@@ -243,41 +271,28 @@ impl<'a> Own<'a> {
     }
 }
 
-/// An entry of a port, and its line if it has one.
-type Lined<'a> = (&'a Entry, Option<u64>);
-
 /// The reference in the paper's order, with a 0 for every node that only `theirs` has
-/// at a particle; and what else only `theirs` has.
-fn with_unseen_nodes<'a>(reference: &[Entry], theirs: &'a Printed) -> (Vec<Entry>, Vec<Lined<'a>>) {
-    let known: HashSet<Place> = reference.iter().map(place).collect();
+/// at a particle; and which entries else only `theirs` has.
+fn with_unseen_nodes(
+    reference: &[Entry],
+    given: &HashMap<Place, f64>,
+    theirs: &Printed,
+) -> (Vec<Entry>, Vec<usize>) {
     let rows: HashSet<(Row, usize)> = reference.iter().map(|e| (row(e), e.component)).collect();
     let (mut all, mut extra) = (reference.to_vec(), Vec::new());
     for (n, entry) in theirs.entries.iter().enumerate() {
-        if known.contains(&place(entry)) {
+        if given.contains_key(&place(entry)) {
             continue;
         }
         if entry.node.is_some() && rows.contains(&(row(entry), entry.component)) {
             all.push(Entry { value: 0.0, ..entry.clone() });
         } else {
-            extra.push((entry, theirs.lines.get(n).copied()));
+            extra.push(n);
         }
     }
     let order = |symbol: &str| SYMBOLS.iter().position(|known| known.0 == symbol);
     all.sort_by_key(|e| (e.k, e.step, order(e.symbol), e.index, e.node, e.component));
     (all, extra)
-}
-
-/// A number that only one of the two has: the port, with its line, or the reference.
-fn alone(theirs: &Printed, entry: &Entry, line: Option<u64>) -> Fault {
-    let extra = theirs.entries.iter().any(|own| place(own) == place(entry));
-    let (has, other) = match extra {
-        true => ("there is", "which the reference has not"),
-        false => ("there is no", "but others of its kind"),
-    };
-    Fault::Alone {
-        place: line.map_or(theirs.name.clone(), |line| format!("{}, line {line}", theirs.name)),
-        problem: format!("{has} {}, {other}", spelled(entry)),
-    }
 }
 
 /// Where an entry stands, in words.

@@ -43,7 +43,7 @@ impl<'a> Rows<'a> {
         for (n, column) in rows.header.iter().enumerate() {
             if rows.header.iter().take(n).any(|before| before == column) {
                 let problem = format!("the column `{}` is there twice", brief(column));
-                return Err(rows.fault(1, problem, rows.wanted.clone()));
+                return Err(rows.no_header(problem));
             }
         }
         Ok(rows)

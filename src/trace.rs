@@ -82,7 +82,7 @@ pub fn trace_in<const D: usize>(
         }
         Method::Mpm(_) => time::start(&mut state, &model, cost)?,
     }
-    let mut checked = recorder.all_finite(0, Moment::START)?;
+    recorder.finite(Moment::START)?;
     for k in 1..=steps {
         recorder.k = k;
         let moment = Moment { step: k, time: k as f64 * model.dt };
@@ -101,7 +101,7 @@ pub fn trace_in<const D: usize>(
                 Integrator::GeneralizedAlpha { rho_b } => alpha(r, s, m, rho_b, moment, cost)?,
             },
         }
-        checked = recorder.all_finite(checked, moment)?;
+        recorder.finite(moment)?;
     }
     Ok((recorder.entries, state))
 }

@@ -1,6 +1,7 @@
 //! The tie between paper, code, tests and book, held from both ends; and every
 //! command in book and README, run as it is printed.
 
+use crate::support::program;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -288,8 +289,7 @@ fn surviving_mutants_are_explained() {
 
 /// A directory of its own with the scenes, where commands may write.
 fn directory(name: &str) -> PathBuf {
-    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    fs::remove_dir_all(&dir).ok();
+    let dir = program::directory(name);
     fs::create_dir_all(dir.join("data/scenes")).unwrap();
     for entry in fs::read_dir(root().join("data/scenes")).unwrap() {
         let entry = entry.unwrap();

@@ -164,15 +164,19 @@ fn in_both(entries: &[Entry]) -> String {
     text
 }
 
-fn traced(sets: &[&str], steps: usize, keep: impl Fn(&Entry) -> bool) -> String {
-    let entries = trace::trace(&dyka(sets), steps).unwrap();
-    in_both(&entries.into_iter().filter(keep).collect::<Vec<Entry>>())
+fn traced(sets: &[&str], steps: usize) -> String {
+    in_both(&trace::trace(&dyka(sets), steps).unwrap())
 }
 
 /// What the probes of the bar follow: its last particle, and the one nearest to 3L/4.
-fn followed(entry: &Entry) -> bool {
-    let last = |symbol: &str| entry.symbol == symbol && (entry.step == 9 || entry.step == 6);
-    (last("v_p") && entry.index == 79) || (last("sigma_p") && entry.index == 59)
+fn histories(sets: &[&str]) -> String {
+    let mut entries = trace::trace(&dyka(sets), 320).unwrap();
+    entries.retain(|entry| match (entry.step, entry.symbol) {
+        (9, "v_p") => entry.index == 79,
+        (6, "sigma_p") => entry.index == 59,
+        _ => false,
+    });
+    in_both(&entries)
 }
 
 /// The errors of the two histories with a tenth of room on both sides.
@@ -285,8 +289,8 @@ fn kit() -> Vec<Piece> {
         ("lme_1.csv", "lme_10.csv", "local max-ent, γ = 0.8", lme),
     ] {
         let scene = [sets, &[small]].concat();
-        kit.push(piece(1, name, says, &scene, "step", traced(&scene, 1, |_| true)));
-        kit.push(piece(2, ten, says, &scene, "steps", traced(&scene, 10, |_| true)));
+        kit.push(piece(1, name, says, &scene, "step", traced(&scene, 1)));
+        kit.push(piece(2, ten, says, &scene, "steps", traced(&scene, 10)));
     }
     let modulus = [small, "body.poisson_ratio=0.25"];
     kit.push(piece(
@@ -295,7 +299,7 @@ fn kit() -> Vec<Piece> {
         "linear basis, Poisson's ratio 1/4: the modulus is λ + 2μ",
         &modulus,
         "step",
-        traced(&modulus, 1, |_| true),
+        traced(&modulus, 1),
     ));
     kit.push(piece(
         2,
@@ -304,7 +308,7 @@ fn kit() -> Vec<Piece> {
          behind it has no mass",
         &ON_NODE,
         "steps",
-        traced(&ON_NODE, 3, |_| true),
+        traced(&ON_NODE, 3),
     ));
     for (name, says, sets) in [
         ("as_printed_3.csv", "step 8 as printed", &["time.reading=as-printed"][..]),
@@ -318,7 +322,7 @@ fn kit() -> Vec<Piece> {
         ),
     ] {
         let scene = [sets, &[small]].concat();
-        kit.push(piece(2, name, says, &scene, "steps", traced(&scene, 3, |_| true)));
+        kit.push(piece(2, name, says, &scene, "steps", traced(&scene, 3)));
     }
     kit.push(piece(
         3,
@@ -326,7 +330,7 @@ fn kit() -> Vec<Piece> {
         "velocity at L and stress at 3L/4 over 4 L/c, 40 cells",
         &[],
         "history",
-        traced(&[], 320, followed),
+        histories(&[]),
     ));
     kit.push(piece(
         3,
@@ -334,7 +338,7 @@ fn kit() -> Vec<Piece> {
         "the same, local max-ent, γ = 0.8",
         lme,
         "history",
-        traced(lme, 320, followed),
+        histories(lme),
     ));
     kit.push(piece(
         3,

@@ -85,10 +85,7 @@ fn checked(file: &str, arguments: &[&str], bug: &str) -> Option<Output> {
     let mut arguments: Vec<&str> =
         arguments.iter().map(|a| if *a == "FILE" { own } else { a }).collect();
     arguments.push(&bug);
-    let printed = port(&arguments)?;
-    let theirs = root().join("target/tmp").join(format!("{bug}_{}", file.replace('/', "_")));
-    fs::create_dir_all(theirs.parent().unwrap()).unwrap();
-    fs::write(&theirs, printed).unwrap();
+    let printed = program::text(&port(&arguments)?);
     let manifest = fs::read_to_string(kit().join("manifest.json")).unwrap();
     let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
     let files = manifest["files"].as_array().unwrap();
@@ -96,16 +93,9 @@ fn checked(file: &str, arguments: &[&str], bug: &str) -> Option<Output> {
     let class = &manifest["tolerances"][entry["tolerance"].as_str().unwrap()];
     // Of whole histories the kit has two particles.
     let part: &[&str] = if file.starts_with("level-3") { &["--part"] } else { &[] };
-    let output = Command::new(env!("CARGO_BIN_EXE_lme-mpm"))
-        .arg("check")
-        .args([&path, &theirs])
-        .args(part)
-        .args(["--rtol", &class["relative"].to_string()])
-        .args(["--atol", &class["absolute"].to_string()])
-        .output()
-        .unwrap();
-    fs::remove_file(&theirs).unwrap();
-    Some(output)
+    let [rtol, atol] = ["relative", "absolute"].map(|kind| class[kind].to_string());
+    let check = [&["check", own, "-", "--rtol", &rtol, "--atol", &atol], part].concat();
+    Some(program::program_with_input(root(), &check, &printed))
 }
 
 /// The port passes levels 0 to 3: every number that the kit has and it prints, and what

@@ -22,9 +22,9 @@ pub fn source(entry: &Entry) -> (&'static str, &'static str) {
 }
 
 /// Two traces, to look things up.
-struct Traces<'a> {
-    reference: HashMap<Place, f64>,
-    theirs: &'a HashMap<Place, f64>,
+pub struct Traces<'a> {
+    pub reference: &'a HashMap<Place, f64>,
+    pub theirs: &'a HashMap<Place, f64>,
 }
 
 impl Traces<'_> {
@@ -43,14 +43,7 @@ fn near(a: f64, b: f64) -> bool {
 }
 
 /// The likely cause of a difference at `entry`, where the port has `theirs`.
-pub fn of(
-    entry: &Entry,
-    theirs: f64,
-    reference: &[Entry],
-    own: &HashMap<Place, f64>,
-) -> Option<&'static str> {
-    let all = reference.iter().map(|entry| (place(entry), entry.value)).collect();
-    let traces = Traces { reference: all, theirs: own };
+pub fn of(entry: &Entry, theirs: f64, reference: &[Entry], traces: Traces) -> Option<&'static str> {
     let by_value = if entry.step == 0 { None } else { value_tells(entry, theirs, reference) };
     by_value.or_else(|| numbering(entry, theirs, &traces)).or_else(|| match entry.node {
         Some(_) => pair(entry, reference),

@@ -62,12 +62,11 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
     let integrator = integrator(&check, &file.time)?;
     let boundary = boundary(&check, &file.boundary)?;
     let mut grid = grid(&check, &file.grid, &boundary, file.basis.kind.get_ref() == "ugimp")?;
-    let method = if is_otm {
+    let method = if is_otm { Method::Otm } else { Method::Mpm(integrator) };
+    if is_otm {
+        otm(&check, &file)?;
         grid.beyond.fill([0, 0]);
-        otm(&check, &file)?
-    } else {
-        Method::Mpm(integrator)
-    };
+    }
     let basis = basis(&check, &file.basis, &grid)?;
     filled(&check, &file.body.ball, &body, &grid)?;
     let motion = motion(&check, &file, method, &body, &grid, &boundary)?;

@@ -2,7 +2,7 @@
 
 use super::check::Check;
 use super::file::{File, FileBasis, FileTime};
-use super::{GridSpec, Method, Time};
+use super::{GridSpec, Time};
 use crate::basis::Basis;
 use crate::fault::SceneError;
 use crate::reading::{StepEight, StressUpdate};
@@ -115,7 +115,7 @@ pub fn basis(check: &Check, file: &FileBasis, grid: &GridSpec) -> Result<Basis, 
 }
 
 /// What OTM cannot do, refused.
-pub fn otm(check: &Check, file: &File) -> Result<Method, Box<SceneError>> {
+pub fn otm(check: &Check, file: &File) -> Result<(), Box<SceneError>> {
     let refuse = |key: &str, span: std::ops::Range<usize>, problem: &str, allowed: &str| {
         let mut error = check.source.error(key, span, format!("with the method \"otm\" {problem}"));
         error.allowed = allowed.to_string();
@@ -153,5 +153,5 @@ pub fn otm(check: &Check, file: &File) -> Result<Method, Box<SceneError>> {
         let problem = "the nodes are the body's own, and none stands beyond it";
         return refuse(&format!("grid.beyond.{name}"), cells.span(), problem, "no such key");
     }
-    Ok(Method::Otm)
+    Ok(())
 }

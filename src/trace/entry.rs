@@ -83,12 +83,11 @@ impl Recorder {
         self
     }
 
-    /// That what was written down since the first `checked` entries are numbers; how
-    /// many there are now.
-    pub(super) fn all_finite(&self, checked: usize, moment: Moment) -> Result<usize, Breakdown> {
-        let new = &self.entries[checked..];
+    /// That what this time step has written down are numbers.
+    pub(super) fn finite(&self, moment: Moment) -> Result<(), Breakdown> {
+        let new = &self.entries[self.entries.partition_point(|entry| entry.k < self.k)..];
         let Some(entry) = new.iter().find(|entry| !entry.value.is_finite()) else {
-            return Ok(self.entries.len());
+            return Ok(());
         };
         let (symbol, index) = (entry.symbol, entry.index);
         Err(match symbol.ends_with("_I") || symbol.starts_with("p_I") {
