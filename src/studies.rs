@@ -1,6 +1,7 @@
 //! The commands that run studies.
 
-use crate::{QuantityName, TradeArguments, print_bytes};
+use crate::arguments::{QuantityName, TradeArguments};
+use crate::print_bytes;
 use indicatif::{ProgressBar, ProgressStyle};
 use lme_mpm::exact::Exact;
 use lme_mpm::fault::Fault;

@@ -1,0 +1,266 @@
+//! What the command line understands.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// The Material Point Method with local maximum-entropy shape functions.
+///
+/// Without a command it runs the Dyka and Ingel bar, which ships inside the
+/// program, and writes the results to out/dyka.
+#[derive(Parser)]
+#[command(
+    version,
+    after_help = "Example:\n  lme-mpm            run the built-in bar\n  lme-mpm run --help what a run reads and writes"
+)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Run a scene and compare it with its exact solution
+    ///
+    /// Writes history.csv, particles.csv, summary.csv, cost.csv and one SVG
+    /// for each probe. A run that breaks down leaves history.failed.csv only.
+    #[command(
+        after_help = "Example:\n  lme-mpm run data/scenes/dyka.toml --set grid.cells=160 --set time.cfl=0.9 --out out/fine"
+    )]
+    Run {
+        /// The scene file (TOML, SI units)
+        scene: PathBuf,
+        /// Where to write; out/<scene name> without it
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Replace or add a value of the scene; may be given again
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+        /// No progress bar and no summary
+        #[arg(long, short)]
+        quiet: bool,
+    },
+    /// Evaluate the exact solution of a scene at points
+    ///
+    /// Reads CSV with the columns x,t (m, s) and prints CSV
+    /// x,t,velocity,stress,displacement (m, s, m/s, Pa, m), where x is the
+    /// place of the material point at t = 0.
+    #[command(
+        after_help = "Example:\n  printf 'x,t\\n0.1333,1e-5\\n' | lme-mpm exact data/scenes/dyka.toml --points -"
+    )]
+    Exact {
+        /// The scene file (TOML, SI units)
+        scene: PathBuf,
+        /// The points; - reads standard input
+        #[arg(long, value_name = "FILE|-")]
+        points: PathBuf,
+    },
+    /// Evaluate shape functions and their gradients at points
+    ///
+    /// Reads two CSV files with the columns x[,y[,z]] (m) and prints CSV
+    /// point,node,N,dN_dx[,dN_dy[,dN_dz]], points and nodes counted from 0.
+    /// Nodes outside the support are left out. lme takes any set of nodes, the
+    /// others a regular grid.
+    #[command(
+        after_help = "Example:\n  lme-mpm shape --basis lme --spacing 0.1 --gamma 0.8 --nodes nodes.csv --points points.csv"
+    )]
+    Shape(ShapeArguments),
+    /// Write down every intermediate of the first steps of a scene
+    ///
+    /// CSV k,step,symbol,index,node,component,value in the paper's order, to hold a
+    /// port against; see `lme-mpm check`.
+    #[command(
+        after_help = "Example:\n  lme-mpm trace data/scenes/dyka.toml --steps 2 --set grid.cells=4 --out trace.csv"
+    )]
+    Trace {
+        /// The scene file (TOML, SI units)
+        scene: PathBuf,
+        /// How many time steps, at most those of the scene
+        #[arg(long, value_name = "K", default_value_t = 1)]
+        steps: usize,
+        /// Replace or add a value of the scene; may be given again
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+        /// Numbers in hexadecimal, as C prints them with %a
+        #[arg(long)]
+        hex: bool,
+        /// Where to write, folders are made; without it, or with -, standard output
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
+    /// Hold a port's trace against a reference
+    ///
+    /// Reads two CSV files with the columns of a trace. The port may leave out time
+    /// steps, or symbols of a time step, and is told so. Reports the first number
+    /// that differs, in the paper's order, with its equation and the likely cause;
+    /// the exit code is then 1, and 2 for files that cannot be compared.
+    #[command(
+        after_help = "Example:\n  lme-mpm check data/conformance/level-1/linear_1.csv port.csv --rtol 1e-11 --atol 1e-13"
+    )]
+    Check {
+        /// What `lme-mpm trace` wrote, or a file of the conformance kit; - reads standard input
+        reference: PathBuf,
+        /// What the port wrote; - reads standard input
+        theirs: PathBuf,
+        /// Allowed difference, relative to the number
+        #[arg(long, default_value_t = 1e-9, value_parser = fraction, allow_negative_numbers = true)]
+        rtol: f64,
+        /// Allowed besides, relative to the largest value of the symbol in its time step
+        #[arg(long, default_value_t = 1e-12, value_parser = fraction, allow_negative_numbers = true)]
+        atol: f64,
+        /// Compare what both have, also where the port has only some numbers of a symbol, or more
+        #[arg(long)]
+        part: bool,
+    },
+    /// Measure the trade of speed for accuracy on a scene
+    ///
+    /// Runs many configurations three times each and writes trade.csv (errors,
+    /// energy drift, counted cost, wall time), cheapest.csv, and a work-precision
+    /// diagram for each quantity. runs.csv is its log: a study that was interrupted
+    /// goes on where it stopped.
+    #[command(
+        after_help = "Example:\n  lme-mpm trade --out out/trade\n  lme-mpm trade --list | parallel --jobs 2 '{}' '>' 'rows/{#}.csv'\n  lme-mpm trade --out out/trade --merge rows/*.csv"
+    )]
+    Trade(TradeArguments),
+    /// Find the cheapest configuration that reaches an error on a scene
+    ///
+    /// Measures as `trade` does, prints the evidence, and writes
+    /// recommended.toml, a scene file ready to run.
+    #[command(
+        after_help = "Example:\n  lme-mpm recommend data/scenes/vibration.toml --error 1% --quantity displacement"
+    )]
+    Recommend {
+        /// The scene file (TOML, SI units); it needs an exact solution
+        scene: PathBuf,
+        /// The relative error to reach, as 1% or 0.01
+        #[arg(long, value_parser = percent)]
+        error: f64,
+        /// Which error
+        #[arg(long, default_value = "velocity")]
+        quantity: QuantityName,
+        /// Where to write; out/recommend/<scene name> without it
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Threads; each run has one of its own
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+    },
+    /// Study the parameter γ of local max-ent on the bar
+    ///
+    /// Writes gamma.csv and pictures: errors, overshoot, total variation,
+    /// dispersion, energy drift, cost and the largest stable time step against γ,
+    /// for MPM with both mass matrices and for OTM.
+    #[command(after_help = "Example:\n  lme-mpm gamma --out out/gamma")]
+    Gamma {
+        /// Where to write
+        #[arg(long, value_name = "DIR", default_value = "out/gamma")]
+        out: PathBuf,
+        /// Threads; each run has one of its own
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+    },
+    /// Map the largest stable time step, predicted and measured
+    ///
+    /// Writes stability.csv for every basis, integrator, mass, number of particles
+    /// per cell and offset on the grid of a scene.
+    #[command(after_help = "Example:\n  lme-mpm stability --out out/stability --jobs 2")]
+    Stability {
+        /// The scene file; the built-in bar on 10 cells without it
+        #[arg(long, value_name = "FILE")]
+        scene: Option<PathBuf>,
+        /// Where to write
+        #[arg(long, value_name = "DIR", default_value = "out/stability")]
+        out: PathBuf,
+        /// Threads; each run has one of its own
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+    },
+}
+
+#[derive(Args)]
+pub struct TradeArguments {
+    /// The scene file; the built-in bar without it
+    #[arg(long, value_name = "FILE")]
+    pub scene: Option<PathBuf>,
+    /// Where to write
+    #[arg(long, value_name = "DIR", default_value = "out/trade")]
+    pub out: PathBuf,
+    /// The large grid, which takes hours
+    #[arg(long)]
+    pub full: bool,
+    /// Threads; each run has one of its own
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    pub jobs: u16,
+    /// Print the command of every row and do nothing
+    #[arg(long, conflicts_with_all = ["row", "merge"])]
+    pub list: bool,
+    /// Run one row of --list and print its part of the log
+    #[arg(long, value_name = "CONFIGURATION", conflicts_with = "merge")]
+    pub row: Option<String>,
+    /// Gather logs that --row has printed
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    pub merge: Vec<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum QuantityName {
+    Velocity,
+    Stress,
+    Displacement,
+}
+
+#[derive(Args)]
+pub struct ShapeArguments {
+    #[arg(long)]
+    pub basis: BasisName,
+    /// h, the spacing of the nodes (m)
+    #[arg(long, value_name = "H", value_parser = positive, allow_negative_numbers = true)]
+    pub spacing: f64,
+    /// γ = βh² of lme
+    #[arg(long, value_name = "G", required_if_eq("basis", "lme"), value_parser = positive, allow_negative_numbers = true)]
+    pub gamma: Option<f64>,
+    /// lme leaves out nodes with exp(−γ|ξ|²) below it; 0 leaves out none
+    #[arg(long, value_name = "TOL", default_value_t = 1e-6, value_parser = fraction, allow_negative_numbers = true)]
+    pub cutoff: f64,
+    /// Half the length of a particle of ugimp (m), at most H/2
+    #[arg(long, value_name = "LP", required_if_eq("basis", "ugimp"), value_parser = positive, allow_negative_numbers = true)]
+    pub half_length: Option<f64>,
+    /// The nodes
+    #[arg(long, value_name = "FILE")]
+    pub nodes: PathBuf,
+    /// The points; - reads standard input
+    #[arg(long, value_name = "FILE|-")]
+    pub points: PathBuf,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum BasisName {
+    Linear,
+    Ugimp,
+    Lme,
+    Bspline,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x > 0.0 && x.is_normal() && x.recip().is_normal() => Ok(x),
+        _ => Err("a number above 0, at least 1e-307 and at most 1e307, is allowed".to_string()),
+    }
+}
+
+fn fraction(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if (0.0..1.0).contains(&x) => Ok(x),
+        _ => Err("a number from 0 up to and below 1 is allowed".to_string()),
+    }
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    match number.parse::<f64>() {
+        Ok(x) if x > 0.0 && x * unit < 10.0 => Ok(x * unit),
+        _ => Err("a number above 0 is allowed, as 1% or 0.01".to_string()),
+    }
+}
