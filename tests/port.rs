@@ -8,15 +8,11 @@ use lme_mpm::check::{self, Report, Tolerance, compare};
 use lme_mpm::trace::{self, Entry};
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn kit() -> PathBuf {
-    root().join("data/conformance")
 }
 
 /// What the port prints, `None` where there is no python3.
@@ -80,13 +76,13 @@ const fn answer(file: &'static str, arguments: &'static [&'static str]) -> Answe
 /// Runs the port on a file of the kit, and `lme-mpm check` on what it prints, with the
 /// tolerance that the manifest gives.
 fn checked(file: &str, arguments: &[&str], bug: &str) -> Option<Output> {
-    let path = kit().join(file);
+    let path = kit::folder().join(file);
     let (bug, own) = (format!("bug={bug}"), path.to_str().unwrap());
     let mut arguments: Vec<&str> =
         arguments.iter().map(|a| if *a == "FILE" { own } else { a }).collect();
     arguments.push(&bug);
     let printed = program::text(&port(&arguments)?);
-    let manifest = fs::read_to_string(kit().join("manifest.json")).unwrap();
+    let manifest = fs::read_to_string(kit::folder().join("manifest.json")).unwrap();
     let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
     let files = manifest["files"].as_array().unwrap();
     let entry = files.iter().find(|entry| entry["file"] == file).unwrap();
@@ -126,7 +122,7 @@ fn port_passes_the_kit() {
 /// alternative reading of step 8 is that of level 2.
 #[test]
 fn port_keeps_the_bands() {
-    let bands = fs::read_to_string(kit().join("level-3/bands.csv")).unwrap();
+    let bands = fs::read_to_string(kit::folder().join("level-3/bands.csv")).unwrap();
     for (basis, name) in [("linear", "linear"), ("0.8", "lme γ = 0.8")] {
         let Some(printed) = port(&["errors", "40", "2", "0.5", "320", basis]) else { return };
         let printed = String::from_utf8(printed).unwrap();
@@ -240,7 +236,7 @@ fn port_mistakes_are_found() {
         ("missing-square", "measure", (1, "rms")),
         ("half-reflection", "exact", (1, "v")),
     ] {
-        let path = kit().join(format!("level-0/{what}.csv"));
+        let path = kit::folder().join(format!("level-0/{what}.csv"));
         let printed =
             port(&[what.split('_').next().unwrap(), path.to_str().unwrap(), &format!("bug={bug}")])
                 .unwrap();
@@ -251,7 +247,7 @@ fn port_mistakes_are_found() {
     }
     // What shows only where a node has no mass.
     let bug = "node-without-mass-stands";
-    let file = kit().join("level-2/on_node_3.csv");
+    let file = kit::folder().join("level-2/on_node_3.csv");
     let printed = port(&[&FLIGHT[..], &[&format!("bug={bug}")]].concat()).unwrap();
     let theirs = check::read("port.py", printed.as_slice()).unwrap();
     let reference = check::read("on_node_3", fs::File::open(file).unwrap()).unwrap();

@@ -1,5 +1,6 @@
 //! What several tests share: scenes with changes, runs, and orders.
 
+pub mod kit;
 pub mod program;
 
 use lme_mpm::continuum::state::State;
