@@ -1,14 +1,15 @@
 //! Against closed forms: the exact solution itself, and runs that have one.
-#![allow(non_snake_case)]
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::exact::riemann::{Bar, End, Patch, coupling, eigenvectors, eigenvectors_inverse};
-use lme_mpm::exact::{Exact, Fields};
-use lme_mpm::fault::Fault;
-use lme_mpm::measure::{observed_order, rms};
+use lme_mpm::method::exact::riemann::{
+    Bar, End, Patch, coupling, eigenvectors, eigenvectors_inverse,
+};
+use lme_mpm::method::exact::{Exact, Fields};
+use lme_mpm::method::measure::{observed_order, rms};
+use lme_mpm::output::summary::{Scales, lines};
 use lme_mpm::scene::Scene;
-use lme_mpm::summary::{Scales, lines};
+use lme_mpm::scene::fault::Fault;
 use nalgebra::{Matrix2, Vector2};
 
 const E: f64 = 200e9;
@@ -339,7 +340,7 @@ fn observed_order_is_the_least_squares_line() {
 /// How long a solution can be trusted, and for which scenes there is none.
 #[test]
 fn exact_says_until_when() {
-    let latest = |scene: &Scene| Exact::of(scene).unwrap().latest();
+    let latest = |scene: &Scene| lme_mpm::setup::exact(scene).unwrap().latest();
     let transit = transit();
     for (scene, expected) in [
         (dyka(&[]), 2.0_f64.powi(50) * transit),
@@ -351,10 +352,12 @@ fn exact_says_until_when() {
     }
     // The first mode between a fixed and a free end: k = π / 2L.
     let moving = scene(MANUFACTURED, &[]);
-    let Ok(Exact::Manufactured(solution)) = Exact::of(&moving) else { panic!("{moving:?}") };
+    let Ok(Exact::Manufactured(solution)) = lme_mpm::setup::exact(&moving) else {
+        panic!("{moving:?}")
+    };
     let expected = 1e4 / (solution.c * solution.mode.k);
     assert_relative_eq!(latest(&moving), expected, max_relative = 1e-14);
-    let error = Exact::of(&scene(DISCS, &[])).unwrap_err();
+    let error = lme_mpm::setup::exact(&scene(DISCS, &[])).unwrap_err();
     assert!(matches!(error, Fault::NoExact { .. }), "{error}");
 }
 

@@ -3,17 +3,16 @@
 //! (a) ΣN = 1, (b) ΣN x = x, (c) Σ∇N = 0, (d) Σ x ⊗ ∇N = 1, (e) N ≥ 0,
 //! (f) ∇N is the slope of N, (g) mirror images agree, (h) other units give the
 //! same bits. And what a basis does at ends, on nodes, and at extremes.
-#![allow(non_snake_case)]
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::basis::lme::Failure;
-use lme_mpm::basis::support::at as lme_at;
-use lme_mpm::basis::{Basis, Reason, Scratch, Values, tabulate};
-use lme_mpm::continuum::shape::Shape;
-use lme_mpm::cost::Cost;
-use lme_mpm::figure;
-use lme_mpm::grid::Grid;
+use lme_mpm::method::basis::Basis;
+use lme_mpm::method::basis::lme::Failure;
+use lme_mpm::method::basis::support::Values;
+use lme_mpm::method::basis::support::at as lme_at;
+use lme_mpm::method::breakdown::Breakdown;
+use lme_mpm::method::grid::Grid;
+use lme_mpm::output::figure;
 use nalgebra::{SMatrix, SVector, Vector1, Vector2, Vector3};
 use proptest::prelude::*;
 use test_case::test_case;
@@ -50,10 +49,7 @@ fn point<const D: usize>(basis: &Basis, s: [f64; 3]) -> SVector<f64, D> {
 }
 
 fn row<const D: usize>(basis: &Basis, grid: &Grid<D>, x: SVector<f64, D>) -> Values<D> {
-    let (mut shape, mut cost) = (Shape::blank(0), Cost::default());
-    tabulate(&mut shape, &mut Scratch::default(), &mut cost, basis, grid, &[x])
-        .unwrap_or_else(|trouble| panic!("{basis:?} at {x:?}: {trouble:?}"));
-    shape.of(0).map(|(I, N, grad)| (I, N, *grad)).collect()
+    on_grid(basis, grid, &[x]).unwrap_or_else(|fault| panic!("{basis:?} at {x:?}: {fault}")).row()
 }
 
 /// (a) to (e).
@@ -202,11 +198,9 @@ fn ugimp_reaches_beyond_the_body() {
     let x = [Vector1::new(0.05)];
     let table = |beyond| {
         let grid = Grid::<1>::over([1.0], [4], [[beyond, 0]]);
-        let (mut shape, mut cost) = (Shape::blank(0), Cost::default());
-        tabulate(&mut shape, &mut Scratch::default(), &mut cost, &UGIMP, &grid, &x)
-            .map(|()| shape.of(0).map(|(_, N, _)| N).sum::<f64>())
+        on_grid(&UGIMP, &grid, &x).map(|table| table.row().iter().map(|value| value.1).sum::<f64>())
     };
-    assert_eq!(table(0).unwrap_err().reason, Reason::OutsideGrid);
+    assert_eq!(table(0), Err(Breakdown::LeftGrid { particle: 0, position: vec![0.05] }));
     assert_relative_eq!(table(1).unwrap(), 1.0, epsilon = 1e-15);
 }
 
@@ -273,12 +267,12 @@ fn basis_figure() {
 fn basis_names_the_particle_outside(basis: Basis) {
     let inside = Vector2::new(0.1, 0.1);
     for outside in [Vector2::new(-0.2, 0.1), Vector2::new(0.1, 1.7), Vector2::new(f64::NAN, 0.1)] {
-        let (mut shape, mut cost) = (Shape::blank(0), Cost::default());
-        let x = [inside, outside];
-        let mut scratch = Scratch::default();
-        let trouble =
-            tabulate(&mut shape, &mut scratch, &mut cost, &basis, &grid::<2>(), &x).unwrap_err();
-        assert_eq!((trouble.particle, trouble.reason), (1, Reason::OutsideGrid));
+        let refused = on_grid(&basis, &grid::<2>(), &[inside, outside]).map(|table| table.row());
+        let expected = match outside[0].is_nan() {
+            true => Breakdown::NotFinite { particle: 1, symbol: "position" },
+            false => Breakdown::LeftGrid { particle: 1, position: outside.as_slice().to_vec() },
+        };
+        assert_eq!(refused, Err(expected));
     }
 }
 
@@ -446,7 +440,7 @@ fn serve_random_points<const D: usize>(tables: usize, points: usize, cells: usiz
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let grid = Grid::<D>::over([1.0; D], [cells; D], [[0, 0]; D]);
-    let (mut shape, mut cost) = (Shape::blank(0), Cost::default());
+    let (mut evaluations, mut iterations) = (0, 0);
     for _ in 0..tables {
         let gamma = libm::exp10(-3.0 + 6.0 * random());
         let basis = Basis::Lme { gamma, cutoff: 1e-6 };
@@ -456,9 +450,10 @@ fn serve_random_points<const D: usize>(tables: usize, points: usize, cells: usiz
         };
         let x: Vec<SVector<f64, D>> =
             (0..points).map(|_| SVector::from_fn(|_, _| coordinate())).collect();
-        tabulate(&mut shape, &mut Scratch::default(), &mut cost, &basis, &grid, &x).unwrap_or_else(
-            |trouble| panic!("γ = {gamma}: {trouble:?}, {:?}", x[trouble.particle]),
-        );
+        let Tabulated { shape, cost, .. } = on_grid(&basis, &grid, &x)
+            .unwrap_or_else(|fault| panic!("γ = {gamma}: {fault}, {x:?}"));
+        evaluations += cost.basis_evaluations;
+        iterations += cost.newton_iterations;
         for (p, x_p) in x.iter().enumerate() {
             let (mut one, mut place) = (-1.0, -x_p);
             for (I, N, _) in shape.of(p) {
@@ -468,8 +463,8 @@ fn serve_random_points<const D: usize>(tables: usize, points: usize, cells: usiz
             assert!(one.abs() < 1e-14 && place.amax() < 1e-14, "γ = {gamma}: {one:e}, {place:?}");
         }
     }
-    assert_eq!(cost.basis_evaluations, (tables * points) as u64);
-    cost.newton_iterations as f64 / cost.basis_evaluations as f64
+    assert_eq!(evaluations, (tables * points) as u64);
+    iterations as f64 / evaluations as f64
 }
 
 /// A million points of a line, and some more in 2D and 3D.

@@ -3,7 +3,7 @@
 //! `KIT_UPDATE=1 cargo test conformance` writes it.
 
 use crate::support::kit::{CLASSES, MUST_FAIL, folder, kit, manifest};
-use lme_mpm::scene::{DYKA, Scene};
+use lme_mpm::scene::DYKA;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -90,14 +90,14 @@ fn conformance_must_fail() {
     for (from, to, names) in MUST_FAIL {
         assert!(DYKA.contains(from), "{from}");
         let text = DYKA.replacen(from, to, 1);
-        match Scene::parse("bad", "bad.toml", &text, &[]) {
+        match lme_mpm::run::parse("bad", "bad.toml", &text, &[]) {
             Err(error) => {
                 let plain = error.key.replace("[0]", "");
                 assert!(plain == names, "{to}: {plain}");
             }
             Ok(scene) => {
                 let stopped = lme_mpm::run::run(&scene, &mut |_| {}).unwrap_err();
-                assert!(names.contains("breakdown") && stopped.breakdown.moment().step < 5, "{to}");
+                assert!(names.contains("breakdown") && stopped.broken.moment.step < 5, "{to}");
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Observed order: in time on smooth data, in space on the bar's jumps.
 
 use crate::support::*;
-use lme_mpm::measure::{Order, observed_order, rms};
-use lme_mpm::summary::lines;
+use lme_mpm::method::measure::{Order, observed_order, rms};
+use lme_mpm::output::summary::lines;
 use std::fmt::Write;
 
 /// The slopes of u and v in Δt, against a run of the same grid with 16 times

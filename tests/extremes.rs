@@ -1,12 +1,12 @@
 //! The method at its limits. Each test says its GOAL, its SETUP and what is EXPECTED.
-#![allow(non_snake_case)]
 
 use crate::support::*;
-use lme_mpm::fault::{Breakdown, Moment};
-use lme_mpm::model::Model;
+use lme_mpm::method::breakdown::Breakdown;
+use lme_mpm::method::model::Model;
+use lme_mpm::method::model::State;
+use lme_mpm::method::time::steps;
 use lme_mpm::run::{Stopped, run};
 use lme_mpm::scene::{DYKA, Scene};
-use lme_mpm::time;
 use nalgebra::SVector;
 use proptest::prelude::*;
 
@@ -17,7 +17,7 @@ fn outcome(scene: &Scene) -> Result<lme_mpm::run::Outcome, Box<Stopped>> {
     let (history, particles) = match &result {
         Ok(outcome) => (&outcome.history, Some(&outcome.particles)),
         Err(stopped) => {
-            assert!(stopped.breakdown.to_string().len() > 30);
+            assert!(stopped.broken.breakdown.to_string().len() > 30);
             (&stopped.history, None)
         }
     };
@@ -40,34 +40,17 @@ fn extremes_particle_just_beyond_a_node() {
     for (name, sets) in SCHEMES {
         for epsilon in [1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 1e-15] {
             let scene = dyka(&[sets, &["grid.cells=8", "grid.particles_per_cell=1"]].concat());
-            let model = Model::<1>::of(&scene);
-            let at_end = |state: &mut lme_mpm::continuum::state::State<1>| {
+            let model = lme_mpm::setup::model::<1>(&scene);
+            let at_end = |state: &mut lme_mpm::method::model::State<1>| {
                 state.particle.x[7][0] = 0.1333 + epsilon * model.grid.h[0];
             };
-            let mut state = model.initial_state(&scene);
+            let mut state = lme_mpm::setup::initial_state(&model, &scene);
             at_end(&mut state);
-            let mut cost = lme_mpm::cost::Cost::default();
-            let steps = &mut time::steps::tabulate::<1>;
-            steps(
-                &mut state.shape,
-                &mut state.scratch,
-                &state.particle,
-                &model,
-                Moment::START,
-                &mut cost,
-            )
-            .unwrap();
-            time::steps::transfer(
-                &mut state.node,
-                &mut None,
-                &state.particle,
-                &state.shape,
-                Moment::START,
-                &mut cost,
-            )
-            .unwrap();
-            let limit = lme_mpm::study::stability::limit(&mut state, &model);
-            let c = lme_mpm::model::wave_speed(&scene.body);
+            let State { particle, node, shape, mass, scratch, .. } = &mut state;
+            steps::tabulate(shape, scratch, particle, &model).unwrap();
+            steps::transfer(node, mass, particle, shape).unwrap();
+            let limit = lme_mpm::run::stability::limit(&mut state, &model);
+            let c = lme_mpm::scene::wave_speed(&scene.body);
             let courant = c * limit / model.grid.h[0];
             let filtered = !(name.contains("(last)") || name.contains("generalized"));
             if filtered {
@@ -82,7 +65,7 @@ fn extremes_particle_just_beyond_a_node() {
             }
             // Frozen to 1e-20 of a cell, so that ε stays what it is.
             let model = Model { dt: 0.9 * limit, ..model.clone() };
-            let mut state = model.initial_state(&scene);
+            let mut state = lme_mpm::setup::initial_state(&model, &scene);
             at_end(&mut state);
             for v in &mut state.particle.v {
                 v[0] *= 1e-20;
@@ -102,8 +85,8 @@ fn extremes_particle_just_beyond_a_node() {
 fn extremes_particles_on_nodes_and_one_bit_beside() {
     for ulps in [-1.0, 0.0, 1.0] {
         let scene = scene(FREE_FLIGHT, &["grid.particles_per_cell=1", "time.cfl=1.2"]);
-        let model = Model::<1>::of(&scene);
-        let mut state = model.initial_state(&scene);
+        let model = lme_mpm::setup::model::<1>(&scene);
+        let mut state = lme_mpm::setup::initial_state(&model, &scene);
         for (p, x) in state.particle.x.iter_mut().enumerate() {
             let node = (p as f64) * model.grid.h[0];
             x[0] = node + ulps * f64::EPSILON * node.max(1e-300);
@@ -116,8 +99,8 @@ fn extremes_particles_on_nodes_and_one_bit_beside() {
         for sets in BASES.iter().skip(1).map(|(_, sets)| *sets) {
             let scene =
                 crate::support::scene(FREE_FLIGHT, &[sets, &["grid.beyond.left=3"]].concat());
-            let model = Model::<1>::of(&scene);
-            let mut state = model.initial_state(&scene);
+            let model = lme_mpm::setup::model::<1>(&scene);
+            let mut state = lme_mpm::setup::initial_state(&model, &scene);
             for (p, x) in state.particle.x.iter_mut().enumerate() {
                 let node = (p / 2) as f64 * model.grid.h[0];
                 x[0] = node * (1.0 + ulps * f64::EPSILON);
@@ -176,9 +159,11 @@ fn extremes_of_speed() {
         let speed = cells_per_step * 0.1 / dt;
         let text = format!("initial_velocity.0.velocity={speed:e}");
         let stopped = outcome(&scene(FREE_FLIGHT, &[&text, "time.end=0.5"])).unwrap_err();
-        let named =
-            matches!(stopped.breakdown, Breakdown::LeftGrid { .. } | Breakdown::NotFinite { .. });
-        assert!(named, "{cells_per_step}: {}", stopped.breakdown);
+        let named = matches!(
+            stopped.broken.breakdown,
+            Breakdown::LeftGrid { .. } | Breakdown::NotFinite { .. }
+        );
+        assert!(named, "{cells_per_step}: {}", stopped.broken.breakdown);
     }
 }
 
@@ -229,7 +214,7 @@ fn extremes_of_units_and_place() {
             "grid.cells=12".to_string(),
         ];
         let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
-        if let Ok(scene) = Scene::parse(
+        if let Ok(scene) = lme_mpm::run::parse(
             "far",
             "far",
             DYKA,
@@ -276,8 +261,8 @@ fn extremes_of_the_time_step() {
             &[sets, &["grid.cells=8", "time.fraction_of_critical=1e-6", "time.end=1e-10"]].concat(),
         );
         let result = outcome(&scene).unwrap();
-        let steps = result.cost.steps;
-        assert!((5..100).contains(&steps), "{name}: {steps}");
+        let taken = result.cost.steps;
+        assert!((5..100).contains(&taken), "{name}: {taken}");
         let u = result.particles.column("displacement").unwrap();
         let exact = result.particles.column("displacement_exact").unwrap();
         let (last, exact) = (u.last().unwrap(), exact.last().unwrap());
@@ -285,10 +270,10 @@ fn extremes_of_the_time_step() {
         let wild = ["grid.cells=8", "time.cfl=9", "time.fraction_of_critical=1.5", "time.end=1e-3"];
         let stopped = outcome(&dyka(&[sets, &wild].concat())).unwrap_err();
         let grown = matches!(
-            stopped.breakdown,
+            stopped.broken.breakdown,
             Breakdown::Diverged { .. } | Breakdown::Inverted { .. } | Breakdown::LeftGrid { .. }
         );
-        assert!(grown && stopped.breakdown.moment().step > 0, "{name}: {}", stopped.breakdown);
+        assert!(grown && stopped.broken.moment.step > 0, "{name}: {}", stopped.broken);
     }
 }
 
@@ -357,8 +342,8 @@ fn extremes_nan_is_caught() {
         for what in ["x", "v", "sigma"] {
             for bad in [f64::NAN, f64::INFINITY] {
                 let scene = dyka(&[&sets[..], &["grid.cells=10"]].concat());
-                let model = Model::<1>::of(&scene);
-                let mut state = model.initial_state(&scene);
+                let model = lme_mpm::setup::model::<1>(&scene);
+                let mut state = lme_mpm::setup::initial_state(&model, &scene);
                 march(&model, &mut state, 5);
                 let nodes = !state.node.x.is_empty();
                 let hurt = 9;
@@ -368,16 +353,13 @@ fn extremes_nan_is_caught() {
                     "v" => state.particle.v[hurt][0] = bad,
                     _ => state.particle.sigma[hurt][0] = bad,
                 }
-                let moment = Moment { step: 6, time: 6.0 * model.dt };
-                let mut cost = lme_mpm::cost::Cost::default();
-                let stopped = time::advance(&mut state, &model, moment, &mut cost).unwrap_err();
+                let stopped = advance(&model, &mut state, 6).unwrap_err();
                 let particle = match stopped {
                     Breakdown::NotFinite { particle, .. }
                     | Breakdown::LeftGrid { particle, .. } => particle,
                     Breakdown::NoBasis { particle, .. } => particle,
                     other => panic!("{name}, {what}: {other}"),
                 };
-                assert_eq!(stopped.moment().step, 6);
                 // Nodes and points of OTM are numbered apart, two points to a node.
                 let beside = if nodes && what == "v" { 2 * hurt } else { hurt };
                 assert!(particle.abs_diff(beside) <= 6, "{name}, {what}: {particle}");
@@ -393,7 +375,7 @@ fn extremes_nan_is_caught() {
 fn extremes_of_memory() {
     let ask = |text: &str, sets: &[&str]| {
         let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-        Scene::parse("big", "big", text, &sets).unwrap_err().problem
+        lme_mpm::run::parse("big", "big", text, &sets).unwrap_err().problem
     };
     assert!(ask(DYKA, &["grid.cells=1000000000"]).contains("GB"));
     assert!(ask(DYKA, &["grid.cells=9000000000000000000"]).contains("GB"));
@@ -428,7 +410,7 @@ proptest! {
             letters.truncate((cut * letters.len() as f64) as usize);
         }
         let text: String = letters.into_iter().collect();
-        if let Err(error) = Scene::parse("fuzz", "fuzz.toml", &text, &[]) {
+        if let Err(error) = lme_mpm::run::parse("fuzz", "fuzz.toml", &text, &[]) {
             prop_assert!(error.span.end <= error.text.len());
             prop_assert!(!error.to_string().is_empty());
         }
@@ -437,7 +419,7 @@ proptest! {
     /// GOAL: no `--set` makes it panic either.
     #[test]
     fn extremes_of_sets(set in "[a-z_.0-9]{0,24}=?[-+0-9a-z\\[\\]{}\"., ]{0,16}") {
-        if let Err(error) = Scene::parse("fuzz", "fuzz.toml", DYKA, &[set]) {
+        if let Err(error) = lme_mpm::run::parse("fuzz", "fuzz.toml", DYKA, &[set]) {
             prop_assert!(!error.to_string().is_empty());
         }
     }
@@ -484,7 +466,7 @@ fn extremes_of_frugality() {
             cost.factorizations,
             cost.candidates
         );
-        let lme = matches!(scene.basis, lme_mpm::basis::Basis::Lme { .. });
+        let lme = matches!(scene.basis, lme_mpm::method::basis::Basis::Lme { .. });
         assert_eq!(cost.exponentials > 0, lme, "{name}");
         assert_eq!(cost.body_forces > 0, text == GRAVITY || text == MANUFACTURED, "{name}");
         assert_eq!(cost.tractions > 0, text == TRACTION, "{name}");

@@ -2,22 +2,19 @@
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::model::Model;
-use lme_mpm::summary::{cost_lines, lines};
-use lme_mpm::time::generalized_alpha::Parameters;
+use lme_mpm::method::time::generalized_alpha::Parameters;
+use lme_mpm::output::summary::{cost_lines, lines};
 
 /// v and σ of all particles after each of `steps` steps of the bar, thrown so
 /// gently that the particles stay in place to 1e-12 of a cell.
 fn frozen(sets: &[&str], steps: usize) -> Vec<(Vec<f64>, Vec<f64>)> {
     let scene = dyka(&[sets, &["initial_velocity.0.velocity=1e-9", "grid.cells=20"]].concat());
-    let model = Model::<1>::of(&scene);
-    let mut state = model.initial_state(&scene);
-    let mut cost = lme_mpm::cost::Cost::default();
-    lme_mpm::time::start(&mut state, &model, &mut cost).unwrap();
+    let model = lme_mpm::setup::model::<1>(&scene);
+    let mut state = lme_mpm::setup::initial_state(&model, &scene);
+    march(&model, &mut state, 0);
     let mut history = Vec::new();
     for step in 1..=steps {
-        let moment = lme_mpm::fault::Moment { step, time: step as f64 * model.dt };
-        lme_mpm::time::advance(&mut state, &model, moment, &mut cost).unwrap();
+        advance(&model, &mut state, step).unwrap();
         let particle = &state.particle;
         history.push((
             particle.v.iter().map(|v| v[0]).collect(),

@@ -1,17 +1,15 @@
 //! Laws that hold for any data: at a point, of the sums, of a whole run.
-#![allow(non_snake_case)]
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::basis::{Basis, tabulate};
-use lme_mpm::continuum::law::{LinearElastic, density, symmetric_part};
-use lme_mpm::continuum::shape::Shape;
-use lme_mpm::continuum::state::{Particles, State};
-use lme_mpm::continuum::sums;
-use lme_mpm::cost::Cost;
-use lme_mpm::grid::Grid;
-use lme_mpm::measure;
-use lme_mpm::model::Model;
+use lme_mpm::method::basis::Basis;
+use lme_mpm::method::continuum::law::{LinearElastic, density, symmetric_part};
+use lme_mpm::method::continuum::shape::Shape;
+use lme_mpm::method::continuum::state::Particles;
+use lme_mpm::method::continuum::sums;
+use lme_mpm::method::grid::Grid;
+use lme_mpm::method::measure;
+use lme_mpm::method::model::State;
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector2};
 
 // ---- the pointwise laws --------------------------------------------------------
@@ -78,24 +76,15 @@ fn law_rotation_and_inversion() {
 /// A 2D block with scattered velocities and stresses, tabulated.
 fn scattered() -> (Grid<2>, State<2>) {
     let scene = strip(2, &["initial_velocity=[]"]);
-    let model = Model::<2>::of(&scene);
-    let mut state = model.initial_state(&scene);
+    let model = lme_mpm::setup::model::<2>(&scene);
+    let mut state = lme_mpm::setup::initial_state(&model, &scene);
     for p in 0..state.particle.len() {
         let s = p as f64;
         state.particle.x[p] += Vector2::new((1.7 * s).sin(), (2.3 * s).cos()) * 1e-4;
         state.particle.v[p] = Vector2::new((0.3 * s).sin(), (0.7 * s).cos());
         state.particle.sigma[p] = Matrix2::new(s.sin(), s.cos(), s.cos(), (2.0 * s).sin()) * 1e6;
     }
-    let mut cost = Cost::default();
-    tabulate(
-        &mut state.shape,
-        &mut state.scratch,
-        &mut cost,
-        &Basis::Linear,
-        &model.grid,
-        &state.particle.x,
-    )
-    .unwrap();
+    state.shape = on_grid(&Basis::Linear, &model.grid, &state.particle.x).unwrap().shape;
     (model.grid, state)
 }
 
@@ -155,7 +144,7 @@ fn sums_to_particle_survives_tiny_mass() {
     shape.end_row();
     let particle =
         Particles { m: vec![2.0], ..Particles::at_rest(vec![SVector::<f64, 1>::new(0.0)], 1.0) };
-    let mut node = lme_mpm::continuum::state::Nodes::<1>::blank(2);
+    let mut node = lme_mpm::method::continuum::state::Nodes::<1>::blank(2);
     sums::lumped_mass(&mut node, &particle, &shape);
     let force = [SVector::<f64, 1>::new(2e10), SVector::<f64, 1>::new(-1e10)];
     // f_I / m_I alone would be 5e309; mapped, both parts are f / m_p.
@@ -168,7 +157,7 @@ fn sums_to_particle_survives_tiny_mass() {
 #[test]
 fn model_fixes_the_nodes_of_a_side() {
     let sets = ["boundary={ left = { x = 'fixed' }, top = 'fixed' }", "grid.beyond={ left = 1 }"];
-    let model = Model::<2>::of(&strip(2, &sets));
+    let model = lme_mpm::setup::model::<2>(&strip(2, &sets));
     assert_eq!(model.grid.cells, [42, 4]); // 1 + 40 + 1 and 1 + 3 + 0
     let mut expected = Vec::new();
     for I in 0..model.grid.nodes() {
@@ -231,8 +220,8 @@ fn run_strip_equals_bar() {
 #[test]
 fn run_rigid_motion_is_exactly_free_of_stress() {
     fn check<const D: usize>(scene: &lme_mpm::scene::Scene) {
-        let model = Model::<D>::of(scene);
-        let mut state = model.initial_state(scene);
+        let model = lme_mpm::setup::model::<D>(scene);
+        let mut state = lme_mpm::setup::initial_state(&model, scene);
         let start = state.particle.x[0];
         let rho = state.particle.rho.clone();
         let v = state.particle.v.clone();
@@ -279,8 +268,8 @@ fn run_rigid_motion_of_every_basis() {
         &["basis.kind=lme", "basis.gamma=50"],
     ] {
         let scene = scene(FREE_FLIGHT, sets);
-        let model = Model::<1>::of(&scene);
-        let mut state = model.initial_state(&scene);
+        let model = lme_mpm::setup::model::<1>(&scene);
+        let mut state = lme_mpm::setup::initial_state(&model, &scene);
         march(&model, &mut state, model.steps);
         let strain = 8.0 * model.dt / model.grid.h[0] * f64::EPSILON;
         let bound = 20.0 * 1e6 * strain * model.steps as f64;
@@ -306,8 +295,8 @@ fn run_rigid_motion_at_any_speed_is_round_off() {
         ];
         let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
         let scene = scene(FREE_FLIGHT, &sets);
-        let model = Model::<1>::of(&scene);
-        let mut state = model.initial_state(&scene);
+        let model = lme_mpm::setup::model::<1>(&scene);
+        let mut state = lme_mpm::setup::initial_state(&model, &scene);
         march(&model, &mut state, model.steps);
         let per_step = 1e6 * f64::EPSILON * f64::abs(velocity) * model.dt / model.grid.h[0];
         let bound = 4.0 * per_step * model.steps as f64;

@@ -1,16 +1,13 @@
 //! Local max-ent against references of 60 digits and more, and how its λ is
 //! found.
-#![allow(non_snake_case)]
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::basis::lme::Failure;
-use lme_mpm::basis::support::at as lme_at;
-use lme_mpm::basis::{Basis, Scratch, tabulate};
-use lme_mpm::continuum::shape::Shape;
-use lme_mpm::cost::Cost;
-use lme_mpm::figure;
-use lme_mpm::grid::Grid;
+use lme_mpm::method::basis::Basis;
+use lme_mpm::method::basis::lme::Failure;
+use lme_mpm::method::basis::support::at as lme_at;
+use lme_mpm::method::grid::Grid;
+use lme_mpm::output::figure;
 use nalgebra::{Matrix2, SVector, Vector1, Vector2};
 use std::collections::BTreeMap;
 
@@ -107,11 +104,10 @@ fn check<const D: usize>(
             let top = nodes.last().unwrap();
             let cells: [usize; D] = std::array::from_fn(|d| (top[d] / h).round() as usize);
             let grid = Grid { h: SVector::repeat(h), cells, before: [0; D], upper: *top };
-            let (mut shape, mut cost) = (Shape::blank(0), Cost::default());
             let basis = Basis::Lme { gamma, cutoff: 0.0 };
-            tabulate(&mut shape, &mut Scratch::default(), &mut cost, &basis, &grid, &[x])
-                .unwrap_or_else(|trouble| panic!("point {point}: {trouble:?}"));
-            let values: Vec<_> = shape.of(0).map(|(I, N, grad)| (I, N, *grad)).collect();
+            let values = on_grid(&basis, &grid, &[x])
+                .unwrap_or_else(|fault| panic!("point {point}: {fault}"))
+                .row();
             let errors = table.entry((label, format!("{D}D grid"))).or_default();
             compare(errors, point, h, &values, reference);
         }
@@ -192,11 +188,9 @@ fn lme_plain_newton_fails() {
             }
             let end = SVector::<f64, 1>::new(8.0);
             let grid = Grid { h: SVector::repeat(1.0), cells: [16], before: [8], upper: end };
-            let (mut shape, mut cost) = (Shape::blank(0), Cost::default());
             let basis = Basis::Lme { gamma, cutoff: 0.0 };
             let x = [SVector::<f64, 1>::new(*x)];
-            tabulate(&mut shape, &mut Scratch::default(), &mut cost, &basis, &grid, &x).unwrap();
-            most = most.max(cost.newton_iterations);
+            most = most.max(on_grid(&basis, &grid, &x).unwrap().cost.newton_iterations);
         }
         assert!(most <= 8, "γ = {gamma}: {most}");
         failures.push(fails);
@@ -274,12 +268,9 @@ fn lme_multiplier_of_two_nodes() {
 fn lme_at_the_edge_of_the_numbers() {
     let grid = Grid::over([8.0], [8], [[0, 0]]);
     for x in [1e-60, 1e-100, 1e-150, 1e-151, 1e-200, 5e-324] {
-        let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
         let basis = Basis::Lme { gamma: 0.8, cutoff: 1e-6 };
-        let points = [Vector1::new(x)];
-        let cost = &mut Cost::default();
-        tabulate(&mut shape, &mut scratch, cost, &basis, &grid, &points).unwrap();
-        let values: Vec<f64> = shape.of(0).map(|(_, N, _)| N).collect();
+        let table = on_grid(&basis, &grid, &[Vector1::new(x)]).unwrap();
+        let values: Vec<f64> = table.shape.of(0).map(|(_, N, _)| N).collect();
         assert_relative_eq!(values[0], 1.0, max_relative = 1e-15);
         let inner = if x < 1e-150 { 0.0 } else { x };
         assert_relative_eq!(values[1], inner, epsilon = 0.0, max_relative = 1e-12);
@@ -294,11 +285,9 @@ fn lme_at_the_edge_of_the_numbers() {
 fn lme_counts_its_exponentials() {
     fn counts<const D: usize>(gamma: f64, points: &[[f64; D]]) -> (u64, u64) {
         let grid = Grid::over([4.0; D], [4; D], [[0, 0]; D]);
-        let (mut shape, mut scratch) = (Shape::<D>::blank(0), Scratch::default());
-        let mut cost = Cost::default();
         let points: Vec<_> = points.iter().map(|x| SVector::from(*x)).collect();
         let basis = Basis::Lme { gamma, cutoff: 0.0 };
-        tabulate(&mut shape, &mut scratch, &mut cost, &basis, &grid, &points).unwrap();
+        let Tabulated { shape, cost, .. } = on_grid(&basis, &grid, &points).unwrap();
         assert_eq!(shape.len(), points.len() * 5usize.pow(D as u32), "every node is seen");
         (cost.exponentials, cost.newton_iterations)
     }

@@ -1,17 +1,16 @@
 //! Loads: the exact solutions that go with them against references of 60
 //! digits, runs against the exact solutions, and nothing computed undeclared.
-#![allow(non_snake_case)]
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::exact::forced::{Forced, Load};
-use lme_mpm::exact::manufactured::Manufactured;
-use lme_mpm::exact::mode::{Mode, Vibration};
-use lme_mpm::exact::riemann::{Bar, End, Patch};
-use lme_mpm::exact::{Exact, Fields};
-use lme_mpm::measure::rms;
+use lme_mpm::method::exact::forced::{Forced, Load};
+use lme_mpm::method::exact::manufactured::Manufactured;
+use lme_mpm::method::exact::mode::{Mode, Vibration};
+use lme_mpm::method::exact::riemann::{Bar, End, Patch};
+use lme_mpm::method::exact::{Exact, Fields};
+use lme_mpm::method::measure::rms;
+use lme_mpm::method::time::generalized_alpha::Parameters;
 use lme_mpm::scene::Scene;
-use lme_mpm::time::generalized_alpha::Parameters;
 
 /// The rows of a reference file, by column name.
 struct Row(csv::StringRecord, csv::StringRecord);
@@ -165,7 +164,7 @@ fn gravity_converges_to_the_exact_swing() {
     assert!((slope(&h, &u) - 5.0 / 3.0).abs() < 0.05, "{u:?}");
     assert!((slope(&h, &v) - 1.0).abs() < 0.05, "{v:?}");
     let scene = scene(GRAVITY, &[]);
-    let exact = Exact::of(&scene).unwrap();
+    let exact = lme_mpm::setup::exact(&scene).unwrap();
     let (rho, b, L, E) = (2000.0, 9.81, 10.0, 5e9);
     let half_swing = exact.at(L, 0.5 * scene.time.end).displacement;
     assert_relative_eq!(half_swing, rho * b * L * L / E, max_relative = 1e-9);
@@ -389,7 +388,9 @@ fn loads_undeclared_are_uncomputed() {
 #[test]
 fn forced_front_belongs_to_the_loaded_side() {
     let scene = dyka(&["initial_velocity=[]", "probe=[]", "traction.right=1e6"]);
-    let Exact::Linear { forced: Some(forced), .. } = Exact::of(&scene).unwrap() else { panic!() };
+    let Exact::Linear { forced: Some(forced), .. } = lme_mpm::setup::exact(&scene).unwrap() else {
+        panic!()
+    };
     let at_once = forced.at(forced.length, 0.0);
     assert_relative_eq!(at_once.stress, 1e6, max_relative = 1e-15);
     assert_relative_eq!(at_once.velocity, 1e6 / forced.Z, max_relative = 1e-15);

@@ -8,6 +8,7 @@ mod conformance;
 mod conservation;
 mod convergence;
 mod extremes;
+mod house;
 mod integrators;
 mod laws;
 mod lme;

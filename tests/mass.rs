@@ -1,17 +1,15 @@
 //! The consistent mass matrix (13): its sums, its solutions, and its limits.
-#![allow(non_snake_case)]
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::basis::{Basis, Scratch, tabulate};
-use lme_mpm::continuum::mass::ConsistentMass;
-use lme_mpm::continuum::shape::Shape;
-use lme_mpm::continuum::state::{Nodes, Particles, State};
-use lme_mpm::continuum::sums;
-use lme_mpm::cost::Cost;
-use lme_mpm::fault::Breakdown;
-use lme_mpm::grid::Grid;
-use lme_mpm::model::Model;
+use lme_mpm::method::basis::Basis;
+use lme_mpm::method::breakdown::{Breakdown, BrokenDown};
+use lme_mpm::method::continuum::mass::{ConsistentMass, MassMatrix};
+use lme_mpm::method::continuum::state::{Nodes, Particles};
+use lme_mpm::method::continuum::sums;
+use lme_mpm::method::grid::Grid;
+use lme_mpm::method::model::Model;
+use lme_mpm::method::model::State;
 use lme_mpm::run::run;
 use lme_mpm::scene::Scene;
 use nalgebra::{DMatrix, DVector, SVector, Vector1, Vector2};
@@ -19,8 +17,8 @@ use nalgebra::{DMatrix, DVector, SVector, Vector1, Vector2};
 /// A scene's particles, moved off their places, with masses that differ, and
 /// tabulated; nodes with m_I and p_I.
 fn loose<const D: usize>(scene: &Scene) -> (Model<D>, State<D>) {
-    let model = Model::<D>::of(scene);
-    let mut state = model.initial_state(scene);
+    let model = lme_mpm::setup::model::<D>(scene);
+    let mut state = lme_mpm::setup::initial_state(&model, scene);
     let h = model.grid.h;
     let particle = &mut state.particle;
     for p in 0..particle.len() {
@@ -31,12 +29,14 @@ fn loose<const D: usize>(scene: &Scene) -> (Model<D>, State<D>) {
         }
         particle.m[p] *= 1.0 + 0.3 * (0.9 * s).cos();
     }
-    let x = &state.particle.x;
-    let (shape, scratch) = (&mut state.shape, &mut state.scratch);
-    tabulate(shape, scratch, &mut Cost::default(), &model.basis, &model.grid, x).unwrap();
+    state.shape = on_grid(&model.basis, &model.grid, &state.particle.x).unwrap().shape;
     sums::lumped_mass(&mut state.node, &state.particle, &state.shape);
     sums::momentum(&mut state.node, &state.particle, &state.shape);
     (model, state)
+}
+
+fn consistent<const D: usize>(nodes: usize, fixed: &[(usize, usize)]) -> MassMatrix<D> {
+    MassMatrix::Consistent(Box::new(ConsistentMass::blank(nodes, fixed)))
 }
 
 /// The bar with every basis and consistent mass.
@@ -74,23 +74,21 @@ fn mass_solves_what_13_says() {
                 }
             }
         }
-        let before = node.p.clone();
-        let mut mass = ConsistentMass::blank(n, &model.fixed);
-        let mut cost = Cost::default();
-        mass.assemble(particle, shape, &node.m, &mut cost).unwrap();
-        mass.spread(&mut node.p, &node.m, &mut cost);
+        let mut mass = consistent(n, &model.fixed);
+        mass.assemble(particle, shape, &node.m).unwrap();
+        mass.solve(&mut node.mv, &node.p, &node.m);
         let v = DVector::from_fn(
             n,
-            |I, _| if node.m[I] > 0.0 { node.p[I][0] / node.m[I] } else { 0.0 },
+            |I, _| if node.m[I] > 0.0 { node.mv[I][0] / node.m[I] } else { 0.0 },
         );
-        let scale = before.iter().map(|p| p[0].abs()).fold(0.0, f64::max);
+        let scale = node.p.iter().map(|p| p[0].abs()).fold(0.0, f64::max);
         for I in 0..n {
             let product: f64 = (0..n).map(|J| M[(I, J)] * v[J]).sum();
-            assert!((product - before[I][0]).abs() < 1e-12 * scale, "{basis}, node {I}");
+            assert!((product - node.p[I][0]).abs() < 1e-12 * scale, "{basis}, node {I}");
         }
         let total = |p: &[SVector<f64, 1>]| p.iter().map(|p| p[0]).sum::<f64>();
-        assert_relative_eq!(total(&node.p), total(&before), epsilon = 1e-12 * scale);
-        assert_eq!((cost.factorizations, cost.solves), (1, 1));
+        assert_relative_eq!(total(&node.mv), total(&node.p), epsilon = 1e-12 * scale);
+        assert_eq!((mass.cost().factorizations, mass.cost().solves), (1, 1));
     }
 }
 
@@ -102,27 +100,23 @@ fn mass_finds_an_affine_velocity() {
     let (_, mut state) = loose::<2>(&scene(&block, &["body.ball=[]", "grid.cells=[5,4]"]));
     let (node, particle, shape) = (&mut state.node, &mut state.particle, &state.shape);
     let affine = |x: &Vector2<f64>| Vector2::new(1.0 + 2.0 * x[0] - x[1], 0.5 * x[0] + 3.0 * x[1]);
-    let model = Model::<2>::of(&scene(&block, &["body.ball=[]", "grid.cells=[5,4]"]));
+    let model = lme_mpm::setup::model::<2>(&scene(&block, &["body.ball=[]", "grid.cells=[5,4]"]));
     for p in 0..particle.len() {
         particle.v[p] = affine(&particle.x[p]);
     }
-    let mut mass = ConsistentMass::blank(node.len(), &[]);
-    let mut cost = Cost::default();
-    mass.assemble(particle, shape, &node.m, &mut cost).unwrap();
     let mut worst = [0.0_f64; 2];
-    for (n, consistent) in [false, true].into_iter().enumerate() {
+    for (n, mut mass) in [MassMatrix::Lumped, consistent(node.len(), &[])].into_iter().enumerate() {
         node.p.fill(Vector2::zeros());
         sums::momentum(node, particle, shape);
-        if consistent {
-            mass.spread(&mut node.p, &node.m, &mut cost);
-        }
+        mass.assemble(particle, shape, &node.m).unwrap();
+        mass.solve(&mut node.mv, &node.p, &node.m);
         for I in 0..node.len() {
             // Light nodes beyond the body are lumped.
             let inside = model.grid.index(I).iter().zip([5, 4]).all(|(i, cells)| {
                 (1..=cells + 1).contains(i) // one cell beyond each free side
             });
             if inside && node.m[I] > 0.0 {
-                let off = node.p[I] / node.m[I] - affine(&model.grid.position(I));
+                let off = node.mv[I] / node.m[I] - affine(&model.grid.position(I));
                 worst[n] = worst[n].max(off.norm());
             }
         }
@@ -145,13 +139,12 @@ fn mass_of_components_fixed_differently() {
         for (I, i) in &model.fixed {
             node.p[*I][*i] = 0.0;
         }
-        let mut mass = ConsistentMass::blank(node.len(), &model.fixed);
-        let mut cost = Cost::default();
-        mass.assemble(&state.particle, &state.shape, &node.m, &mut cost).unwrap();
-        mass.spread(&mut node.p, &node.m, &mut cost);
-        assert_eq!((cost.factorizations, cost.solves), (systems, 2));
+        let mut mass = consistent(node.len(), &model.fixed);
+        mass.assemble(&state.particle, &state.shape, &node.m).unwrap();
+        mass.solve(&mut node.mv, &node.p, &node.m);
+        assert_eq!((mass.cost().factorizations, mass.cost().solves), (systems, 2));
         for (I, i) in &model.fixed {
-            assert_eq!(node.p[*I][*i], 0.0);
+            assert_eq!(node.mv[*I][*i], 0.0);
         }
         let others: Vec<(usize, usize)> = match systems {
             1 => model.fixed.clone(),
@@ -161,10 +154,11 @@ fn mass_of_components_fixed_differently() {
         for (I, i) in &others {
             alone.node.p[*I][*i] = 0.0;
         }
-        let mut mass = ConsistentMass::blank(alone.node.len(), &others);
-        mass.assemble(&alone.particle, &alone.shape, &alone.node.m, &mut cost).unwrap();
-        mass.spread(&mut alone.node.p, &alone.node.m, &mut cost);
-        for (p, alone) in state.node.p.iter().zip(&alone.node.p) {
+        let mut mass = consistent(alone.node.len(), &others);
+        let Nodes { m, p, mv, .. } = &mut alone.node;
+        mass.assemble(&alone.particle, &alone.shape, m).unwrap();
+        mass.solve(mv, p, m);
+        for (p, alone) in state.node.mv.iter().zip(&alone.node.mv) {
             assert_eq!(p[1], alone[1]);
         }
     }
@@ -176,11 +170,10 @@ fn mass_of_components_fixed_differently() {
 fn mass_singular_is_named() {
     let one_each = ["mass=consistent", "grid.particles_per_cell=1", "boundary.left=free"];
     let stopped = run(&dyka(&one_each), &mut |_| {}).unwrap_err();
-    let Breakdown::SingularMass { particles: 40, nodes: 41, moment } = stopped.breakdown else {
-        panic!("{}", stopped.breakdown);
-    };
+    let BrokenDown { breakdown, moment } = &stopped.broken;
+    assert_eq!(*breakdown, Breakdown::SingularMass { particles: 40, nodes: 41 });
     assert_eq!(moment.step, 0);
-    let text = stopped.breakdown.to_string();
+    let text = stopped.broken.to_string();
     assert!(text.contains("singular") && text.contains("mass = \"lumped\""), "{text}");
     // Two particles in each cell determine them.
     run(&dyka(&["mass=consistent", "boundary.left=free", "time.cfl=0.3"]), &mut |_| {}).unwrap();
@@ -194,11 +187,10 @@ fn mass_is_light_below_a_quarter() {
         let grid = Grid::over([1.0], [1], [[0, 0]]);
         let mut particle = Particles::at_rest(vec![Vector1::new(x)], 1.0);
         particle.m = vec![1.0];
-        let (mut shape, mut node) = (Shape::blank(1), Nodes::<1>::blank(2));
-        let (scratch, cost) = (&mut Scratch::default(), &mut Cost::default());
-        tabulate(&mut shape, scratch, cost, &Basis::Linear, &grid, &particle.x).unwrap();
+        let mut node = Nodes::<1>::blank(2);
+        let Tabulated { shape, .. } = on_grid(&Basis::Linear, &grid, &particle.x).unwrap();
         sums::lumped_mass(&mut node, &particle, &shape);
-        ConsistentMass::blank(2, &[]).assemble(&particle, &shape, &node.m, cost)
+        consistent(2, &[]).assemble(&particle, &shape, &node.m)
     };
     assert!(assembled(0.25).is_err());
     assert!(assembled(0.25 - f64::EPSILON / 4.0).is_ok());
@@ -215,8 +207,8 @@ fn mass_of_a_light_node_does_no_harm() {
     };
     for epsilon in [0.2, 1e-2, 1e-4, 1e-8, 1e-15] {
         let scene = dyka(&["mass=consistent", "time.cfl=0.35"]);
-        let model = Model::<1>::of(&scene);
-        let mut state = model.initial_state(&scene);
+        let model = lme_mpm::setup::model::<1>(&scene);
+        let mut state = lme_mpm::setup::initial_state(&model, &scene);
         let last = state.particle.len() - 1;
         state.particle.x[last][0] = 0.1333 + epsilon * model.grid.h[0];
         march(&model, &mut state, model.steps);

@@ -2,8 +2,8 @@
 //! Dyka and Ingel bar, its histories pinned and its errors bounded.
 
 use crate::support::*;
+use lme_mpm::output::summary::lines;
 use lme_mpm::run::Outcome;
-use lme_mpm::summary::lines;
 use std::fmt::Write;
 
 /// Both mass matrices, each with a Courant number at which all schemes with all

@@ -1,21 +1,18 @@
 //! OTM: what its nodes keep, what its particles see, and the bar.
-#![allow(non_snake_case)]
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::basis::Basis;
-use lme_mpm::basis::scattered::tabulate;
-use lme_mpm::continuum::law;
-use lme_mpm::continuum::shape::Shape;
-use lme_mpm::continuum::state::{Nodes, Particles, State};
-use lme_mpm::cost::Cost;
-use lme_mpm::fault::{Breakdown, Moment};
-use lme_mpm::measure::{self, observed_order};
-use lme_mpm::model::Model;
-use lme_mpm::otm;
+use lme_mpm::method::basis::Basis;
+use lme_mpm::method::breakdown::Breakdown;
+use lme_mpm::method::continuum::law;
+use lme_mpm::method::continuum::shape::Shape;
+use lme_mpm::method::continuum::state::{Nodes, Particles};
+use lme_mpm::method::measure::{self, observed_order};
+use lme_mpm::method::model::Model;
+use lme_mpm::method::model::State;
+use lme_mpm::method::time::otm;
 use lme_mpm::run::run;
 use lme_mpm::scene::Scene;
-use lme_mpm::time;
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector1, Vector2};
 use std::fmt::Write;
 
@@ -36,13 +33,13 @@ fn scatter<const D: usize>(x: &SVector<f64, D>, size: f64) -> SVector<f64, D> {
 fn otm_affine_patch_on_scattered_nodes() {
     fn check<const D: usize>(gradient: SMatrix<f64, D, D>) {
         let scene = block(D, &[]);
-        let model = Model::<D>::of(&scene);
-        let mut state = model.initial_state(&scene);
+        let model = lme_mpm::setup::model::<D>(&scene);
+        let mut state = lme_mpm::setup::initial_state(&model, &scene);
         for x in state.node.x.iter_mut().chain(&mut state.particle.x) {
             *x = scatter(x, 0.04);
         }
         let start = state.particle.x.clone();
-        otm::start(&mut state, &model, &mut Cost::default()).unwrap();
+        otm::start(&mut state, &model).unwrap();
         // Another gradient in every step, so that the order of the product counts.
         let turned = |step: usize| match step % 2 {
             0 => gradient,
@@ -51,18 +48,15 @@ fn otm_affine_patch_on_scattered_nodes() {
         let (mut whole, mut J) = (SMatrix::<f64, D, D>::identity(), 1.0);
         let steps = 25;
         for step in 1..=steps {
-            let State { particle, node, shape, scratch, .. } = &mut state;
+            let State { particle, node, shape, .. } = &mut state;
             // Δt = 1: v_a is the displacement of the step, affine in the present place.
             for a in 0..node.len() {
                 node.v[a] = turned(step) * node.x[a] + SVector::repeat(0.01);
             }
-            let moment = Moment { step, time: step as f64 };
             otm::move_nodes(node, 1.0);
             otm::move_particles(particle, node, shape, 1.0);
-            otm::deform(particle, node, shape, &model, 1.0, moment).unwrap();
-            let basis = &model.basis;
-            let cost = &mut Cost::default();
-            tabulate(shape, scratch, cost, basis, &model.grid.h, &node.x, &particle.x).unwrap();
+            otm::deform(particle, node, shape, &model, 1.0).unwrap();
+            otm::tabulate_again(&mut state, &model).unwrap();
             whole = (SMatrix::identity() + turned(step)) * whole;
             J *= law::increment(&turned(step)).1;
         }
@@ -111,8 +105,8 @@ fn otm_rigid_translation() {
             region("1")
         );
         let scene = block(D, &[basis, &[throw.as_str(), "time.end=2"]].concat());
-        let model = Model::<D>::of(&scene);
-        let mut state = model.initial_state(&scene);
+        let model = lme_mpm::setup::model::<D>(&scene);
+        let mut state = lme_mpm::setup::initial_state(&model, &scene);
         let start = state.particle.x.clone();
         march(&model, &mut state, model.steps);
         let end = model.steps as f64 * model.dt;
@@ -138,37 +132,36 @@ fn otm_conserves_what_it_should() {
     for gamma in ["0.8", "1.8", "4"] {
         let gamma = format!("basis.gamma={gamma}");
         let scene = block(2, &[&gamma, "grid.particles_per_cell=[2,2]", "time.end=0.2"]);
-        let model = Model::<2>::of(&scene);
-        let mut state = model.initial_state(&scene);
+        let model = lme_mpm::setup::model::<2>(&scene);
+        let mut state = lme_mpm::setup::initial_state(&model, &scene);
         for p in 0..state.particle.len() {
             let x = state.particle.x[p];
             let wave = Vector2::new((3.0 * x[1]).sin(), (2.0 * x[0]).cos()) * 0.3;
             state.particle.v[p] = Vector2::new(2.0 - x[1], x[0]) + wave;
         }
-        otm::start(&mut state, &model, &mut Cost::default()).unwrap();
+        otm::start(&mut state, &model).unwrap();
         let mass: f64 = state.node.m.iter().sum();
         assert_relative_eq!(mass, 1000.0, max_relative = 1e-14);
         let energy = |state: &State<2>| {
-            measure::kinetic_energy(&state.carriers())
+            measure::kinetic_energy(&state.carriers(model.method))
                 + measure::strain_energy(&state.particle, &model.law)
         };
-        let momentum = measure::momentum(&state.carriers());
-        let angular = measure::angular_momentum(&state.carriers())[0];
+        let momentum = measure::momentum(&state.carriers(model.method));
+        let angular = measure::angular_momentum(&state.carriers(model.method))[0];
         let before = energy(&state);
-        let mut cost = Cost::default();
         let (mut swing, mut masses) = (0.0_f64, true);
         let m = state.node.m.clone();
         for step in 1..=model.steps {
-            let moment = Moment { step, time: step as f64 * model.dt };
-            time::advance(&mut state, &model, moment, &mut cost).unwrap();
+            advance(&model, &mut state, step).unwrap();
             swing = swing.max((energy(&state) / before - 1.0).abs());
             masses &= state.node.m == m;
         }
         let n = 10.0 * model.steps as f64 * f64::EPSILON;
         assert!(masses);
-        let drift = (measure::momentum(&state.carriers()) - momentum).norm() / momentum.norm();
+        let drift =
+            (measure::momentum(&state.carriers(model.method)) - momentum).norm() / momentum.norm();
         assert!(drift < n, "{gamma}: {drift:e}");
-        let spun = measure::angular_momentum(&state.carriers())[0] / angular - 1.0;
+        let spun = measure::angular_momentum(&state.carriers(model.method))[0] / angular - 1.0;
         assert!(spun.abs() < n, "{gamma}: {spun:e}");
         assert!(swing < 0.01, "{gamma}: {swing}");
     }
@@ -233,8 +226,9 @@ fn otm_follows_a_manufactured_motion() {
 fn otm_inversion_is_named() {
     let scene = scene(DYKA_OTM, &["initial_velocity.0.velocity=-5e4"]);
     let stopped = run(&scene, &mut |_| {}).unwrap_err();
-    let named = matches!(stopped.breakdown, Breakdown::Inverted { .. } | Breakdown::NoBasis { .. });
-    assert!(named, "{}", stopped.breakdown);
+    let named =
+        matches!(stopped.broken.breakdown, Breakdown::Inverted { .. } | Breakdown::NoBasis { .. });
+    assert!(named, "{}", stopped.broken.breakdown);
     let mut particle = Particles::at_rest(vec![Vector1::new(0.5)], 1.0);
     particle.F = vec![SMatrix::identity()];
     let mut node = Nodes::<1>::blank(2);
@@ -245,10 +239,9 @@ fn otm_inversion_is_named() {
         shape.push(a, 0.5, Vector1::new(slope));
     }
     shape.end_row();
-    let model = Model::<1>::of(&scene);
-    let moment = Moment { step: 2, time: 0.5 };
-    let stopped = otm::deform(&mut particle, &node, &shape, &model, 1.0, moment).unwrap_err();
-    assert_eq!(stopped, Breakdown::Inverted { particle: 0, moment, strain: -1.0 });
+    let model = lme_mpm::setup::model::<1>(&scene);
+    let stopped = otm::deform(&mut particle, &node, &shape, &model, 1.0).unwrap_err();
+    assert_eq!(stopped, Breakdown::Inverted { particle: 0, strain: -1.0 });
 }
 
 // ---- accuracy ------------------------------------------------------------------------
@@ -474,19 +467,17 @@ fn otm_stability_limit() {
     for gamma in ["0.8", "1.8", "4", "6"] {
         let scene =
             scene(DYKA_OTM, &[&format!("basis.gamma={gamma}"), "initial_velocity.0.velocity=1e-7"]);
-        let model = Model::<1>::of(&scene);
+        let model = lme_mpm::setup::model::<1>(&scene);
         let c = (200e9_f64 / 7833.0).sqrt();
         let grows = |courant: f64| {
             let model = Model { dt: courant * model.grid.h[0] / c, ..model.clone() };
-            let mut state = model.initial_state(&scene);
+            let mut state = lme_mpm::setup::initial_state(&model, &scene);
             for (p, v) in state.particle.v.iter_mut().enumerate() {
                 v[0] = 1e-7 * (12.9898 * p as f64).sin();
             }
-            otm::start(&mut state, &model, &mut Cost::default()).unwrap();
-            let mut cost = Cost::default();
+            otm::start(&mut state, &model).unwrap();
             for step in 1..=2000 {
-                let moment = Moment { step, time: step as f64 * model.dt };
-                if time::advance(&mut state, &model, moment, &mut cost).is_err()
+                if advance(&model, &mut state, step).is_err()
                     || state.node.v.iter().any(|v| v[0].abs() > 1e-4)
                 {
                     return true;
@@ -510,8 +501,8 @@ fn otm_stability_limit() {
 /// ω of M⁻¹K by power iteration with the start's functions: K u is the force of the
 /// stress E Σ ∇N u.
 fn largest_frequency(model: &Model<1>, scene: &Scene) -> f64 {
-    let mut state = model.initial_state(scene);
-    otm::start(&mut state, model, &mut Cost::default()).unwrap();
+    let mut state = lme_mpm::setup::initial_state(model, scene);
+    otm::start(&mut state, model).unwrap();
     let State { particle, node, shape, .. } = &mut state;
     for (a, v) in node.v.iter_mut().enumerate() {
         v[0] = if a == 0 { 0.0 } else { (1.7 * a as f64).sin() };
@@ -523,7 +514,7 @@ fn largest_frequency(model: &Model<1>, scene: &Scene) -> f64 {
             particle.sigma[p][0] = 200e9 * strain;
         }
         node.f.fill(Vector1::new(0.0));
-        lme_mpm::continuum::sums::internal_force(node, particle, shape);
+        lme_mpm::method::continuum::sums::internal_force(node, particle, shape);
         node.f[0][0] = 0.0;
         let norm = |list: &[f64]| list.iter().map(|x| x * x).sum::<f64>().sqrt();
         let a: Vec<f64> = (0..node.len()).map(|a| -node.f[a][0] / node.m[a]).collect();

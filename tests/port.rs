@@ -4,8 +4,8 @@
 //! Where there is no python3 nothing is checked; where CI runs, it must be there.
 
 use crate::support::*;
-use lme_mpm::check::{self, Report, Tolerance, compare};
-use lme_mpm::trace::{self, Entry};
+use lme_mpm::port::check::{self, Report, Tolerance, compare};
+use lme_mpm::port::trace::{self, Entry};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;

@@ -7,12 +7,12 @@
 //! commit message.
 
 use crate::support::*;
-use lme_mpm::exact::Exact;
-use lme_mpm::figure;
-use lme_mpm::history::shortest;
+use lme_mpm::method::exact::Exact;
+use lme_mpm::output::figure;
+use lme_mpm::output::summary;
 use lme_mpm::run::Outcome;
+use lme_mpm::run::table::shortest;
 use lme_mpm::scene::Scene;
-use lme_mpm::summary;
 use std::fmt::Write;
 
 /// Errors of the bar by basis, with energy and cost beside them. Whatever the
@@ -72,7 +72,7 @@ fn dyka_figures() {
 /// Figs. 5 and 6 of the paper, and the fronts behind them.
 #[test]
 fn exact_figures() {
-    let Ok(Exact::Linear { thrown: bar, .. }) = Exact::of(&dyka(&[])) else {
+    let Ok(Exact::Linear { thrown: bar, .. }) = lme_mpm::setup::exact(&dyka(&[])) else {
         panic!("the bar has an exact solution");
     };
     let (length, time) = (bar.length, bar.length / bar.c());

@@ -1,15 +1,12 @@
 //! OTM's search: which nodes a material point sees, and what looking for them costs.
-#![allow(non_snake_case)]
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::basis::scattered::{Bins, tabulate};
-use lme_mpm::basis::{Basis, Scratch};
-use lme_mpm::continuum::shape::Shape;
-use lme_mpm::cost::Cost;
-use lme_mpm::fault::Breakdown;
-use lme_mpm::model::Model;
-use lme_mpm::otm;
+use lme_mpm::method::basis::Basis;
+use lme_mpm::method::basis::bins::Bins;
+use lme_mpm::method::breakdown::Breakdown;
+use lme_mpm::method::cost::Cost;
+use lme_mpm::method::time::otm;
 use nalgebra::{Vector1, Vector2};
 
 /// The search finds what looking at all nodes finds, wherever they stand, and the
@@ -62,26 +59,24 @@ fn otm_search_is_linear() {
 #[test]
 fn otm_keeps_enough_neighbours() {
     let scene = scene(DYKA_OTM, &["basis.gamma=6"]);
-    let model = Model::<1>::of(&scene);
-    let mut state = model.initial_state(&scene);
+    let model = lme_mpm::setup::model::<1>(&scene);
+    let mut state = lme_mpm::setup::initial_state(&model, &scene);
     for x in state.node.x.iter_mut().chain(&mut state.particle.x) {
         *x *= 3.0;
     }
-    let (h, basis) = (&model.grid.h, &model.basis);
-    let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
-    let mut cost = Cost::default();
     let (nodes, x) = (&state.node.x, &state.particle.x);
-    tabulate(&mut shape, &mut scratch, &mut cost, basis, h, nodes, x).unwrap();
+    let (Tabulated { shape, .. }, done) = on_nodes(&model.basis, &model.grid.h, nodes, x);
+    done.unwrap();
     for p in 0..x.len() {
         let mean: f64 = shape.of(p).map(|(a, N_ap, _)| N_ap * nodes[a][0]).sum();
         assert_relative_eq!(mean, x[p][0], max_relative = 1e-13);
     }
     state.particle.x[7][0] = -1e-3;
-    let stopped = otm::start(&mut state, &model, &mut cost).unwrap_err();
+    let stopped = otm::start(&mut state, &model).unwrap_err();
     assert!(matches!(stopped, Breakdown::NoBasis { particle: 7, .. }), "{stopped}");
-    let mut state = model.initial_state(&scene);
+    let mut state = lme_mpm::setup::initial_state(&model, &scene);
     state.particle.x[3][0] = f64::NAN;
-    let stopped = otm::start(&mut state, &model, &mut cost).unwrap_err();
+    let stopped = otm::start(&mut state, &model).unwrap_err();
     assert!(matches!(stopped, Breakdown::NotFinite { particle: 3, .. }), "{stopped}");
 }
 
@@ -109,10 +104,8 @@ fn otm_boxes_hold_all_within_reach() {
 fn row(basis: &Basis, nodes: &[f64], x: &[f64]) -> (Option<Vec<f64>>, Cost) {
     let [nodes, x] =
         [nodes, x].map(|list| list.iter().map(|x| Vector1::new(*x)).collect::<Vec<_>>());
-    let (mut shape, mut scratch, mut cost) = (Shape::blank(0), Scratch::default(), Cost::default());
-    let h = Vector1::new(1.0);
-    let made = tabulate(&mut shape, &mut scratch, &mut cost, basis, &h, &nodes, &x);
-    (made.ok().map(|()| shape.pairs().map(|(_, _, N, _)| N).collect()), cost)
+    let (Tabulated { shape, cost, .. }, done) = on_nodes(basis, &Vector1::new(1.0), &nodes, &x);
+    (done.ok().map(|()| shape.pairs().map(|(_, _, N, _)| N).collect()), cost)
 }
 
 /// The search widens by half until the point is enclosed, and stops when there are no

@@ -3,14 +3,14 @@
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::fault::Breakdown;
+use lme_mpm::method::breakdown::Breakdown;
+use lme_mpm::run::stability::{grows, measured, predicted};
 use lme_mpm::scene::Scene;
-use lme_mpm::study::stability::{grows, measured, predicted};
 use std::fmt::Write;
 
 /// c Δt / h of a limit (s).
 fn courant(scene: &Scene, limit: f64) -> f64 {
-    let c = lme_mpm::model::wave_speed(&scene.body);
+    let c = lme_mpm::scene::wave_speed(&scene.body);
     let h = scene.body.length[0] / scene.grid.cells[0] as f64;
     c * limit / h
 }

@@ -1,9 +1,9 @@
 //! The studies: their configurations, their logs, and what they find on the bar.
 
 use crate::support::*;
-use lme_mpm::fault::Fault;
-use lme_mpm::figure;
-use lme_mpm::scene::{DYKA, Scene};
+use lme_mpm::output::figure;
+use lme_mpm::scene::DYKA;
+use lme_mpm::scene::fault::Fault;
 use lme_mpm::study::configuration::{Configuration, Template};
 use lme_mpm::study::gamma;
 use lme_mpm::study::pool;
@@ -286,7 +286,7 @@ fn trade_on_the_bar() {
                 table,
                 "{},{},,,,,,",
                 run.configuration,
-                problem.split(" at step").next().unwrap()
+                problem.split_once("s: ").map_or(problem.as_str(), |(_, what)| what)
             )
             .unwrap(),
         }
@@ -373,6 +373,6 @@ fn fraction_of_critical_sets_the_step() {
     close(courant(&["time.cfl=0.3"]), 0.3);
     close(courant(&["time.cfl=3"]), 0.8 * 3.0_f64.sqrt());
     let none = DYKA.replace("cfl = 0.5\n", "");
-    let error = Scene::parse("x", "x.toml", &none, &[]).unwrap_err();
+    let error = lme_mpm::run::parse("x", "x.toml", &none, &[]).unwrap_err();
     assert!(error.problem.contains("time.fraction_of_critical"), "{error}");
 }

@@ -1,12 +1,10 @@
 //! Traces, and their comparison.
 
 use crate::support::*;
-use lme_mpm::check::{self, Tolerance, compare, ulps};
-use lme_mpm::fault::{Fault, Moment};
-use lme_mpm::model::Model;
+use lme_mpm::port::check::{self, Tolerance, compare, ulps};
+use lme_mpm::port::trace::{self, Entry, hex, number, trace_in};
 use lme_mpm::scene::Scene;
-use lme_mpm::time;
-use lme_mpm::trace::{self, Entry, hex, number, trace_in};
+use lme_mpm::scene::fault::Fault;
 
 const USUAL: Tolerance = Tolerance { relative: 1e-9, absolute: 1e-12 };
 
@@ -16,14 +14,9 @@ const USUAL: Tolerance = Tolerance { relative: 1e-9, absolute: 1e-12 };
 fn trace_is_the_run() {
     fn same<const D: usize>(scene: &Scene) {
         let (entries, traced) = trace_in::<D>(scene, 10).unwrap();
-        let model = Model::<D>::of(scene);
-        let mut state = model.initial_state(scene);
-        let mut cost = lme_mpm::cost::Cost::default();
-        time::start(&mut state, &model, &mut cost).unwrap();
-        for step in 1..=10 {
-            let moment = Moment { step, time: step as f64 * model.dt };
-            time::advance(&mut state, &model, moment, &mut cost).unwrap();
-        }
+        let model = lme_mpm::setup::model::<D>(scene);
+        let mut state = lme_mpm::setup::initial_state(&model, scene);
+        march(&model, &mut state, 10);
         assert_eq!(state.particle, traced.particle);
         assert_eq!(state.node, traced.node);
         let last: Vec<&Entry> = entries.iter().filter(|e| e.k == 10 && e.symbol == "x_p").collect();

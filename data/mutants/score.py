@@ -36,7 +36,7 @@ with open(home / "survivors.csv", newline="") as table:
     explained = {(row["file"], row["code"], row["mutant"]) for row in csv.DictReader(table)}
 scores, seen, faults = {}, set(), []
 for name in listed:
-    module = pathlib.Path(name.split(":")[0]).relative_to("src").parts[0].removesuffix(".rs")
+    module = pathlib.Path(name.split(":")[0]).relative_to("src/method").parts[0].removesuffix(".rs")
     score = scores.setdefault(module, dict.fromkeys(["caught", "timeout", "unviable", "missed"], 0))
     outcome = next((outcome for outcome in tried if name in tried[outcome]), None)
     if outcome is None:

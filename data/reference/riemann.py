@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Reference values for the elastic bar: d'Alembert by images, 60 digits.
 
-Independent of src/exact/riemann.rs: no characteristic is followed. The initial
+Independent of src/method/exact/riemann.rs: no characteristic is followed. The initial
 velocity is continued over the ends (odd at a fixed end, even at a free one) and
 
     v = (V(x - ct) + V(x + ct)) / 2,   s = Z (V(x + ct) - V(x - ct)) / 2,

@@ -3,7 +3,7 @@
 use super::file::PerAxis;
 use super::keys::nearest;
 use super::source::Source;
-use crate::fault::SceneError;
+use crate::scene::fault::SceneError;
 use std::fmt;
 use std::ops::Range;
 use toml::Spanned;

@@ -2,9 +2,9 @@
 
 use super::check::Check;
 use super::file::{File, FileTraction, PerAxis};
+use super::parts::{Body, BodyForce, Side, Traction};
 use super::read::{AXES, axis_of, side_axis};
-use super::{Body, BodyForce, Side, Traction};
-use crate::fault::SceneError;
+use crate::scene::fault::SceneError;
 use toml::Spanned;
 
 type Loads = (Option<BodyForce>, Option<Traction>);

@@ -1,17 +1,17 @@
 //! From the file as written to a checked [`Scene`]: every value in range.
 
 use super::check::{Check, counted};
+use super::fault::SceneError;
 use super::file::*;
 use super::limits::affordable;
 use super::loads;
+use super::parts::*;
 use super::scheme::{basis, integrator, otm, time};
-use super::*;
-use crate::exact::mode::Mode;
-use crate::exact::riemann::End;
-use crate::fault::SceneError;
-use crate::lattice::points;
-use crate::scene::source::Source;
-use crate::study::stability;
+use super::sizes::wave_speed;
+use super::source::{Source, Spans};
+use crate::method::choice::{Mass, Method};
+use crate::method::exact::mode::Mode;
+use crate::method::quadrature::points;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -42,9 +42,46 @@ const TAKEN: [&str; 18] = [
     "energy",
 ];
 
-/// Reads and checks a scene.
-pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
-    let file: File = source.read()?;
+/// A scene with the places where its values were written.
+pub struct Declared {
+    pub scene: Scene,
+    source: Source,
+    spans: Spans,
+}
+
+impl Declared {
+    /// The error `problem` with the value of `key`, wherever it was written.
+    pub fn error(&self, key: &str, problem: impl Into<String>) -> Box<SceneError> {
+        self.source.error(key, self.spans.of(key), problem)
+    }
+
+    /// Refuses a scene with these keys whose arrays would not fit.
+    ///
+    /// Errors: [`SceneError`] with the key that asks for too much.
+    pub fn affordable(&self, scene: &Scene) -> Result<(), Box<SceneError>> {
+        affordable(scene, &|key, problem| self.error(key, problem))
+    }
+}
+
+/// Reads a scene from `text`, with the `KEY=VALUE` of `sets` in place of its own; `path`
+/// is named in errors.
+///
+/// Errors: [`SceneError`] with file, line, key and what is allowed.
+pub fn declare(
+    name: &str,
+    path: &str,
+    text: &str,
+    sets: &[String],
+) -> Result<Declared, Box<SceneError>> {
+    let source = Source::new(path, text, sets);
+    let (file, spans) = source.read()?;
+    let scene = scene(name, &source, file)?;
+    let declared = Declared { scene, source, spans };
+    declared.affordable(&declared.scene)?;
+    Ok(declared)
+}
+
+fn scene(name: &str, source: &Source, file: File) -> Result<Scene, Box<SceneError>> {
     let length = &file.body.length;
     let dimension = length.get_ref().0.len();
     if !(1..=3).contains(&dimension) {
@@ -91,7 +128,7 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
         let problem = format!("it holds the control character {bad:?}");
         return Err(source.error("title", file.title.span(), problem));
     }
-    let mut scene = Scene {
+    Ok(Scene {
         name: name.to_string(),
         title: file.title.into_inner(),
         method,
@@ -107,23 +144,7 @@ pub fn scene(name: &str, source: &Source) -> Result<Scene, Box<SceneError>> {
         probes,
         every,
         vtk,
-    };
-    affordable(&check, &scene, &file.grid, &file.time)?;
-    if let Some(fraction) = &file.time.fraction_of_critical {
-        let key = "time.fraction_of_critical";
-        let limit = stability::predicted(&scene, 0.0)
-            .map_err(|breakdown| check.source.error(key, fraction.span(), breakdown.to_string()))?;
-        let courant = scene.courant_number_of(limit * fraction.get_ref());
-        if file.time.cfl.is_none() || courant < scene.time.cfl {
-            if !courant.is_finite() {
-                let problem = "nothing strains this body: there is no limit";
-                return Err(check.source.error(key, fraction.span(), problem));
-            }
-            scene.time.cfl = courant;
-        }
-        affordable(&check, &scene, &file.grid, &file.time)?;
-    }
-    Ok(scene)
+    })
 }
 
 fn body(check: &Check, file: &FileBody) -> Result<Body, Box<SceneError>> {
@@ -141,7 +162,7 @@ fn body(check: &Check, file: &FileBody) -> Result<Body, Box<SceneError>> {
         balls: Vec::new(),
     };
     let body = Body { balls: balls(check, &file.ball, &body)?, ..body };
-    let c = crate::model::wave_speed(&body);
+    let c = wave_speed(&body);
     let impedance = body.density * c;
     let normal = |x: f64| x.is_normal() && x.recip().is_normal();
     if !(normal(c) && normal(impedance)) {
@@ -339,7 +360,7 @@ fn motion(
     if let Some(table) = file.manufactured.as_ref().map(Spanned::get_ref) {
         let mode = number("manufactured.mode", &table.mode)?;
         let mode = resolved("manufactured.mode", &table.mode, mode)?;
-        let ends = [0, 1].map(|upper: usize| End::of(&boundary[0][upper]));
+        let ends = [0, 1].map(|upper: usize| boundary[0][upper].end());
         let k = Mode::new(ends, mode, body.length[0]).k;
         let key = "manufactured.amplitude";
         let amplitude = check.number(key, &table.amplitude, |a| (a * k).abs() < 1.0)?;

@@ -2,11 +2,11 @@
 
 use super::check::Check;
 use super::file::{File, FileBasis, FileTime};
-use super::{GridSpec, Time};
-use crate::basis::Basis;
-use crate::fault::SceneError;
-use crate::reading::{StepEight, StressUpdate};
-use crate::time::Integrator;
+use super::parts::{GridSpec, Time};
+use crate::method::basis::Basis;
+use crate::method::choice::Integrator;
+use crate::method::reading::{StepEight, StressUpdate};
+use crate::scene::fault::SceneError;
 use toml::Spanned;
 
 /// The `time` table.
@@ -16,17 +16,15 @@ pub fn time(check: &Check, file: &FileTime) -> Result<Time, Box<SceneError>> {
         None => Ok(None),
     };
     let fraction = positive("time.fraction_of_critical", &file.fraction_of_critical)?;
-    let cfl = match (positive("time.cfl", &file.cfl)?, fraction) {
-        (Some(cfl), _) => cfl,
-        (None, Some(fraction)) => fraction, // until the limit is known
-        (None, None) => {
-            let problem = "the time step is not bounded: `time.cfl` is missing, and so is \
-                           `time.fraction_of_critical`";
-            return Err(check.source.error("time.cfl", file.end.span(), problem));
-        }
-    };
+    let cfl = positive("time.cfl", &file.cfl)?;
+    if (cfl, fraction) == (None, None) {
+        let problem = "the time step is not bounded: `time.cfl` is missing, and so is \
+                       `time.fraction_of_critical`";
+        return Err(check.source.error("time.cfl", file.end.span(), problem));
+    }
     Ok(Time {
-        cfl,
+        cfl: cfl.unwrap_or(f64::INFINITY),
+        fraction_of_critical: fraction,
         allow_unstable: file.allow_unstable.as_ref().is_some_and(|value| *value.get_ref()),
         end: check.number("time.end", &file.end, |x| x > 0.0)?,
     })

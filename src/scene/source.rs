@@ -2,7 +2,7 @@
 //! back from a byte to the place where it was written.
 
 use super::keys::{self, KEYS};
-use crate::fault::SceneError;
+use crate::scene::fault::SceneError;
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
@@ -70,7 +70,7 @@ impl Source {
     }
 
     /// Reads the text as a `T`: syntax, unknown keys, missing keys, types.
-    pub fn read<T: for<'de> Deserialize<'de>>(&self) -> Result<T, Box<SceneError>> {
+    pub fn read<T: for<'de> Deserialize<'de>>(&self) -> Result<(T, Spans), Box<SceneError>> {
         let mut padded = Vec::new();
         for piece in &self.pieces {
             padded.push(format!("{}{}", " ".repeat(piece.start), piece.text));
@@ -107,17 +107,16 @@ impl Source {
             return Err(self.error("", 0..0, "the scene is empty"));
         };
         self.known_keys(table.get_ref(), "", table.span())?;
-        let spans = key_spans(table.get_ref(), "");
-        T::deserialize(toml::Deserializer::from(table)).map_err(|error| {
-            let span = error.span().unwrap_or(0..0);
-            let key = spans
-                .iter()
-                .filter(|(_, range)| range.contains(&span.start))
-                .min_by_key(|(_, range)| range.len())
-                .map_or("", |(key, _)| key);
-            let plain = error.message().replace("expected f64", "expected a number");
-            self.error(key, span, plain.replace("expected i64", "expected a whole number"))
-        })
+        let spans = Spans(key_spans(table.get_ref(), ""));
+        match T::deserialize(toml::Deserializer::from(table)) {
+            Ok(file) => Ok((file, spans)),
+            Err(error) => {
+                let span = error.span().unwrap_or(0..0);
+                let plain = error.message().replace("expected f64", "expected a number");
+                let plain = plain.replace("expected i64", "expected a whole number");
+                Err(self.error(spans.key_at(span.start), span, plain))
+            }
+        }
     }
 
     fn merge_table<'i>(
@@ -221,6 +220,23 @@ impl Source {
             }
         }
         Ok(())
+    }
+}
+
+/// Every key of a scene with the span of its value.
+pub struct Spans(Vec<(String, Range<usize>)>);
+
+impl Spans {
+    /// Where the value of `key` stands; the beginning for a key that is not there.
+    pub fn of(&self, key: &str) -> Range<usize> {
+        let found = self.0.iter().find(|(name, _)| name == key);
+        found.map_or(0..0, |(_, span)| span.clone())
+    }
+
+    /// The innermost key whose value holds byte `at`; empty outside of all.
+    fn key_at(&self, at: usize) -> &str {
+        let around = self.0.iter().filter(|(_, span)| span.contains(&at));
+        around.min_by_key(|(_, span)| span.len()).map_or("", |(key, _)| key)
     }
 }
 

@@ -1,8 +1,9 @@
 //! One way to compute a scene: method, mass, basis, integrator, grid and time step,
 //! with a name in one word, and the scene file that goes with it.
 
-use crate::fault::{Fault, SceneError};
+use crate::run;
 use crate::scene::Scene;
+use crate::scene::fault::{Fault, SceneError};
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
@@ -80,19 +81,12 @@ impl std::str::FromStr for Configuration {
 }
 
 impl Template {
-    /// Reads a scene file, and checks that it is a scene.
+    /// Reads a scene from `text`, and checks that it is one; `path` is named in errors.
     ///
-    /// Errors: [`Fault::Read`], [`Fault::Scene`].
-    pub fn open(path: &Path) -> Result<Self, Fault> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| Fault::Read { path: path.to_path_buf(), source })?;
-        Template::parse(path, &text)
-    }
-
-    /// The same from a text.
+    /// Errors: [`Fault::Scene`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, Fault> {
         let name = path.display().to_string();
-        Scene::parse("scene", &name, text, &[])?;
+        run::parse("scene", &name, text, &[])?;
         let table: Table = text.parse().map_err(|error: toml::de::Error| {
             Fault::Scene(Box::new(SceneError {
                 path: name,
@@ -159,7 +153,7 @@ impl Template {
     /// Errors: [`Fault::Scene`].
     pub fn scene_as_it_is(&self) -> Result<Scene, Fault> {
         let name = self.path.display().to_string();
-        Ok(Scene::parse("scene", &name, &self.table.to_string(), &[])?)
+        Ok(run::parse("scene", &name, &self.table.to_string(), &[])?)
     }
 
     /// Number of axes.
@@ -173,7 +167,7 @@ impl Template {
     /// Errors: [`Fault::Scene`] for one that the scene cannot have.
     pub fn scene(&self, configuration: &Configuration) -> Result<Scene, Fault> {
         let name = format!("{} as {configuration}", self.path.display());
-        Ok(Scene::parse("scene", &name, &self.text(configuration), &[])?)
+        Ok(run::parse("scene", &name, &self.text(configuration), &[])?)
     }
 }
 

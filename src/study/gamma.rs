@@ -1,12 +1,13 @@
 //! The parametric study of γ: from the mesh-free end to the finite-element end.
 
 use super::configuration::{Configuration, Template};
-use super::{pool, stability};
-use crate::fault::Fault;
-use crate::history::{csv, shortest};
-use crate::run::run;
-use crate::scene::{DYKA, Scene};
-use crate::summary;
+use super::pool;
+use crate::output::summary;
+use crate::run::stability;
+use crate::run::table::{csv, shortest};
+use crate::run::{self, run};
+use crate::scene::DYKA;
+use crate::scene::fault::Fault;
 use std::path::Path;
 
 /// The values of γ.
@@ -76,7 +77,7 @@ fn values(template: &Template, way: usize, gamma: f64) -> Result<Vec<f64>, Strin
         cfl,
     };
     let scene = template.scene(&configuration).map_err(|fault| fault.to_string())?;
-    let outcome = run(&scene, &mut |_| {}).map_err(|stopped| stopped.breakdown.to_string())?;
+    let outcome = run(&scene, &mut |_| {}).map_err(|stopped| stopped.broken.to_string())?;
     let lines = summary::lines(&scene, &outcome, 0.0);
     let line = |name: &str| lines.iter().find(|l| l.quantity == name).map_or(f64::NAN, |l| l.value);
     let column = |name: &str| outcome.history.column(name).unwrap_or_default();
@@ -120,8 +121,8 @@ fn dispersion(configuration: &Configuration) -> Result<f64, String> {
         configuration.basis.trim_start_matches("lme-"),
         0.5 / f64::from(mode),
     );
-    let scene = Scene::parse("wave", "wave", &text, &[]).map_err(|error| error.problem.clone())?;
-    let outcome = run(&scene, &mut |_| {}).map_err(|stopped| stopped.breakdown.to_string())?;
+    let scene = run::parse("wave", "wave", &text, &[]).map_err(|error| error.problem.clone())?;
+    let outcome = run(&scene, &mut |_| {}).map_err(|stopped| stopped.broken.to_string())?;
     let column = |name: &str| outcome.particles.column(name).unwrap_or_default();
     let k = f64::from(mode) * std::f64::consts::PI;
     let (x, u, v) = (column("position"), column("displacement"), column("velocity"));

@@ -2,9 +2,10 @@
 //! predicted and measured.
 
 use super::configuration::{Configuration, Template};
-use super::{pool, stability};
-use crate::fault::Fault;
-use crate::history::{csv, shortest};
+use super::pool;
+use crate::run::stability;
+use crate::run::table::{csv, shortest};
+use crate::scene::fault::Fault;
 
 /// Steps of a run that is asked whether it grows, and the width of the answer.
 const STEPS: usize = 1500;
@@ -73,7 +74,7 @@ pub fn combinations(dimension: usize) -> Vec<(Configuration, f64)> {
 fn row(template: &Template, (configuration, offset): &(Configuration, f64)) -> Row {
     let limit = || -> Result<(f64, f64), String> {
         let scene = template.scene(configuration).map_err(|fault| fault.to_string())?;
-        let name = |breakdown: crate::fault::Breakdown| breakdown.to_string();
+        let name = |breakdown: crate::method::breakdown::Breakdown| breakdown.to_string();
         let predicted = stability::predicted(&scene, *offset).map_err(name)?;
         if !predicted.is_finite() {
             return Err("nothing strains this body: there is no limit".to_string());

@@ -4,5 +4,4 @@ pub mod configuration;
 pub mod gamma;
 pub mod map;
 pub mod pool;
-pub mod stability;
 pub mod trade;

@@ -2,12 +2,13 @@
 //! costs and how wrong it is.
 
 use super::configuration::{Configuration, Template};
-use super::{map, pool, stability};
-use crate::fault::Fault;
-use crate::history::{csv, shortest};
+use super::{map, pool};
+use crate::output::summary;
 use crate::run::run;
+use crate::run::stability;
+use crate::run::table::{csv, shortest};
+use crate::scene::fault::Fault;
 use crate::scene::{Quantity, Scene};
-use crate::summary;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
@@ -216,8 +217,7 @@ pub fn time(template: &Template, configuration: &Configuration, pass: usize) -> 
     let start = Instant::now();
     let result =
         template.scene(configuration).map_err(|fault| fault.to_string()).and_then(|scene| {
-            let outcome =
-                run(&scene, &mut |_| {}).map_err(|stopped| stopped.breakdown.to_string())?;
+            let outcome = run(&scene, &mut |_| {}).map_err(|stopped| stopped.broken.to_string())?;
             let lines = summary::lines(&scene, &outcome, 0.0);
             let mut list = errors(&scene, &lines);
             let drift = |name: &str| lines.iter().find(|l| l.quantity == name).map(|l| l.value);

@@ -1,14 +1,11 @@
 //! What the conformance kit in `data/conformance/` is made of.
-#![allow(non_snake_case)]
 
 use super::*;
-use lme_mpm::basis::{Scratch, tabulate};
-use lme_mpm::continuum::law::{self, LinearElastic};
-use lme_mpm::continuum::shape::Shape;
-use lme_mpm::exact::{Exact, Fields};
-use lme_mpm::measure::rms;
-use lme_mpm::study::stability::predicted;
-use lme_mpm::trace::{self, Entry, Recorder, hex, number};
+use lme_mpm::method::continuum::law::{self, LinearElastic};
+use lme_mpm::method::exact::Fields;
+use lme_mpm::method::measure::rms;
+use lme_mpm::port::trace::{self, Entry, Recorder, hex, number};
+use lme_mpm::run::stability::predicted;
 use nalgebra::{Matrix1, Matrix2, SMatrix, Vector1};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -24,7 +21,7 @@ pub fn folder() -> PathBuf {
 
 /// A number as decimal and hexadecimal cells.
 fn both(x: f64) -> String {
-    format!("{},{}", lme_mpm::history::shortest(x), hex(x))
+    format!("{},{}", lme_mpm::run::table::shortest(x), hex(x))
 }
 
 /// One file of the kit.
@@ -47,23 +44,22 @@ const QUARTERS: [&str; 5] =
 /// What level 0 gives stands in step 0, what a port makes of it after: a basis at points
 /// inside a cell, on nodes, beside them, near the end.
 fn basis_values(sets: &[&str]) -> String {
-    let model = Model::<1>::of(&dyka(&[sets, &QUARTERS].concat()));
-    let tabulated = |points: &[Vector1<f64>]| {
-        let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
-        let cost = &mut Cost::default();
-        tabulate(&mut shape, &mut scratch, cost, &model.basis, &model.grid, points)
-            .map(|()| (shape, scratch.lambda))
-    };
+    let model = lme_mpm::setup::model::<1>(&dyka(&[sets, &QUARTERS].concat()));
+    let tabulated = |points: &[Vector1<f64>]| on_grid(&model.basis, &model.grid, points);
     let places = [0.25, 0.5, 1.0, 2.75, 3.999, 4.0, 4.001, 6.5, 7.75, 8.0];
     let places = places.map(|cells| Vector1::new(0.25 * cells));
     // uGIMP's particles must not reach beyond the grid.
     let places: Vec<_> = places.into_iter().filter(|x| tabulated(&[*x]).is_ok()).collect();
-    let (shape, lambda) = tabulated(&places).unwrap();
+    let table = tabulated(&places).unwrap();
     let mut kernel = Recorder::default();
     for (p, x) in places.iter().enumerate() {
         kernel.at(0, 0).components("x_p", p, x.as_slice());
     }
-    kernel.at(0, 2).shapes(&shape, &lambda, &model.grid.h);
+    kernel.at(0, 2).shapes(&table.shape);
+    kernel.gradients(&table.shape);
+    if let Basis::Lme { .. } = model.basis {
+        kernel.multipliers(&table.lambda, &model.grid.h);
+    }
     in_both(&kernel.entries)
 }
 
@@ -122,7 +118,7 @@ fn measure_values() -> String {
 }
 
 fn exact_values() -> String {
-    let exact = Exact::of(&dyka(&[])).unwrap();
+    let exact = lme_mpm::setup::exact(&dyka(&[])).unwrap();
     let mut places = Vec::new();
     for x in [0.0, 0.05, 0.099, 0.12, 0.1333] {
         for tau in [0.1, 0.3, 0.9, 1.6, 2.1, 2.9, 3.6, 3.9, 17.3] {

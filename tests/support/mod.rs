@@ -1,16 +1,20 @@
-//! What several tests share: scenes with changes, runs, and orders.
+//! What several tests share: scenes with changes, runs, tables, and orders.
 
 pub mod kit;
 pub mod program;
 
-use lme_mpm::continuum::state::State;
-use lme_mpm::cost::Cost;
-use lme_mpm::fault::Moment;
-use lme_mpm::measure::observed_order;
-use lme_mpm::model::Model;
+use lme_mpm::method::basis::scattered::{Places, fill_from_nodes};
+use lme_mpm::method::basis::{Basis, Scratch, fill_from_grid};
+use lme_mpm::method::breakdown::Breakdown;
+use lme_mpm::method::continuum::shape::Shape;
+use lme_mpm::method::cost::Cost;
+use lme_mpm::method::grid::Grid;
+use lme_mpm::method::measure::observed_order;
+use lme_mpm::method::model::{Model, State};
+use lme_mpm::method::time;
 use lme_mpm::run::{Outcome, run};
 use lme_mpm::scene::{DYKA, Scene};
-use lme_mpm::time;
+use nalgebra::SVector;
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 
 pub const FREE_FLIGHT: &str = include_str!("../../data/scenes/free-flight.toml");
@@ -29,7 +33,7 @@ pub fn transit() -> f64 {
 /// A scene from `text` with the changes `KEY=VALUE`.
 pub fn scene(text: &str, sets: &[&str]) -> Scene {
     let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
-    Scene::parse("test", "test.toml", text, &sets).unwrap_or_else(|error| panic!("{error}"))
+    lme_mpm::run::parse("test", "test.toml", text, &sets).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The Dyka bar with the changes `KEY=VALUE`.
@@ -39,24 +43,79 @@ pub fn dyka(sets: &[&str]) -> Scene {
 
 /// Runs a scene to its end.
 pub fn finished(scene: &Scene) -> Outcome {
-    run(scene, &mut |_| {}).unwrap_or_else(|stopped| panic!("{}", stopped.breakdown))
+    run(scene, &mut |_| {}).unwrap_or_else(|stopped| panic!("{}", stopped.broken))
 }
 
 /// One line of a run's summary.
 pub fn value(scene: &Scene, outcome: &Outcome, quantity: &str) -> f64 {
-    let lines = lme_mpm::summary::lines(scene, outcome, 0.0);
+    let lines = lme_mpm::output::summary::lines(scene, outcome, 0.0);
     lines.iter().find(|line| line.quantity == quantity).unwrap().value
 }
 
 /// Takes `steps` steps of `model` from `state`, which has not been started.
-pub fn march<const D: usize>(model: &Model<D>, state: &mut State<D>, steps: usize) -> Cost {
-    let mut cost = Cost::default();
-    time::start(state, model, &mut cost).unwrap();
+pub fn march<const D: usize>(model: &Model<D>, state: &mut State<D>, steps: usize) {
+    time::start(state, model, &mut |_, _| {}).unwrap();
     for step in 1..=steps {
-        let moment = Moment { step, time: step as f64 * model.dt };
-        time::advance(state, model, moment, &mut cost).unwrap();
+        advance(model, state, step).unwrap();
     }
-    cost
+}
+
+/// Takes time step number `step`.
+pub fn advance<const D: usize>(
+    model: &Model<D>,
+    state: &mut State<D>,
+    step: usize,
+) -> Result<(), Breakdown> {
+    time::advance(state, model, step as f64 * model.dt, &mut |_, _| {})
+}
+
+/// The table of points by themselves, their λ h, and what it has cost.
+pub struct Tabulated<const D: usize> {
+    pub shape: Shape<D>,
+    pub lambda: Vec<SVector<f64, D>>,
+    pub cost: Cost,
+}
+
+impl<const D: usize> Tabulated<D> {
+    /// What the first point sees: node, N, ∇N.
+    pub fn row(&self) -> Vec<(usize, f64, SVector<f64, D>)> {
+        self.shape.of(0).map(|(I, N, grad)| (I, N, *grad)).collect()
+    }
+}
+
+fn tabulated<const D: usize>(
+    points: usize,
+    fill: impl FnOnce(&mut Shape<D>, &mut Scratch<D>, &mut [SVector<f64, D>]) -> Result<(), Breakdown>,
+) -> (Tabulated<D>, Result<(), Breakdown>) {
+    let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
+    let mut lambda = vec![SVector::zeros(); points];
+    let done = fill(&mut shape, &mut scratch, &mut lambda);
+    let cost = shape.cost + scratch.cost();
+    (Tabulated { shape, lambda, cost }, done)
+}
+
+/// The table of a basis on a grid at `x`.
+pub fn on_grid<const D: usize>(
+    basis: &Basis,
+    grid: &Grid<D>,
+    x: &[SVector<f64, D>],
+) -> Result<Tabulated<D>, Breakdown> {
+    let (table, done) = tabulated(x.len(), |shape, scratch, lambda| {
+        fill_from_grid(shape, scratch, lambda, basis, grid, x)
+    });
+    done.map(|()| table)
+}
+
+/// The table of a basis on scattered nodes at `x`, as far as it got, and whether it did.
+pub fn on_nodes<const D: usize>(
+    basis: &Basis,
+    h: &SVector<f64, D>,
+    nodes: &[SVector<f64, D>],
+    x: &[SVector<f64, D>],
+) -> (Tabulated<D>, Result<(), Breakdown>) {
+    tabulated(x.len(), |shape, scratch, lambda| {
+        fill_from_nodes(shape, scratch, lambda, basis, Places { x: nodes, h }, x)
+    })
 }
 
 /// The exponent of error ∝ h^slope by least squares on logarithms.
@@ -96,9 +155,9 @@ pub fn digest(column: &[f64]) -> u64 {
 /// cells with `steps` time steps.
 pub fn smooth_run(sets: &[&str], steps: usize) -> (Vec<f64>, Vec<f64>) {
     let scene = dyka(&[sets, &["grid.cells=160"]].concat());
-    let mut model = Model::<1>::of(&scene);
+    let mut model = lme_mpm::setup::model::<1>(&scene);
     model.dt = transit() / steps as f64;
-    let mut state = model.initial_state(&scene);
+    let mut state = lme_mpm::setup::initial_state(&model, &scene);
     let start: Vec<f64> = state.particle.x.iter().map(|x| x[0]).collect();
     for (v, x) in state.particle.v.iter_mut().zip(&start) {
         v[0] = 0.1 * (std::f64::consts::FRAC_PI_2 * x / 0.1333).sin();

@@ -1,0 +1,204 @@
+//! The commands. No numerics here.
+
+mod arguments;
+mod studies;
+mod terminal;
+
+use arguments::{Arguments, BasisName, Command, ShapeArguments};
+use clap::Parser;
+use comfy_table::{CellAlignment, Table, presets};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lme_mpm::method::basis::Basis;
+use lme_mpm::output::summary::Line;
+use lme_mpm::output::{files, report};
+use lme_mpm::port::check::{self, Tolerance};
+use lme_mpm::port::points::{self, Points};
+use lme_mpm::scene::fault::Fault;
+use lme_mpm::scene::{DYKA, Scene};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use terminal::{open, print_bytes};
+
+const BOLD: anstyle::Style = anstyle::Style::new().bold();
+const RED: anstyle::Style =
+    anstyle::Style::new().bold().fg_color(Some(anstyle::Color::Ansi(anstyle::AnsiColor::Red)));
+
+pub fn main() -> ExitCode {
+    let done = match Arguments::parse().command {
+        None => built_in(),
+        Some(Command::Run { scene, out, set, quiet }) => {
+            files::scene(&scene, &set).and_then(|scene| run(&scene, out, quiet))
+        }
+        Some(Command::Exact { scene, points }) => exact(&scene, &points),
+        Some(Command::Shape(arguments)) => shape(&arguments),
+        Some(Command::Trace { scene, steps, set, hex, out }) => {
+            trace(&scene, steps, &set, hex, out.as_deref())
+        }
+        Some(Command::Check { reference, theirs, rtol, atol, part }) => {
+            compare(&reference, &theirs, Tolerance { relative: rtol, absolute: atol }, part)
+        }
+        Some(Command::Trade(arguments)) => studies::trade(&arguments),
+        Some(Command::Recommend { scene, error, quantity, out, jobs }) => {
+            studies::recommend(&scene, error, quantity, out, jobs)
+        }
+        Some(Command::Gamma { out, jobs }) => studies::gamma(&out, jobs),
+        Some(Command::Stability { scene, out, jobs }) => studies::stability(scene, &out, jobs),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fault) => {
+            let message = match &fault {
+                Fault::Scene(error) => error.render(&annotate_snippets::Renderer::styled()),
+                _ => format!("{RED}error{RED:#}: {fault}"),
+            };
+            // If even this cannot be said, the exit code says it.
+            writeln!(anstream::stderr(), "{message}").ok();
+            ExitCode::from(fault.exit_code())
+        }
+    }
+}
+
+fn built_in() -> Result<(), Fault> {
+    let scene = lme_mpm::run::parse("dyka", "dyka.toml (built in)", DYKA, &[])?;
+    run(&scene, None, false)
+}
+
+fn run(scene: &Scene, out: Option<PathBuf>, quiet: bool) -> Result<(), Fault> {
+    let dir = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
+    let steps = scene.sizes().2 as u64;
+    let bar = ProgressBar::with_draw_target(
+        Some(steps),
+        if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() },
+    );
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} steps, {eta} left") {
+        bar.set_style(style);
+    }
+    let tell = (steps / 200).max(1);
+    let lines = report::run_into(&dir, scene, &mut |step| {
+        if (step as u64).is_multiple_of(tell) {
+            bar.set_position(step as u64);
+        }
+    });
+    bar.finish_and_clear();
+    let lines = lines?;
+    if !quiet {
+        let text = format!(
+            "{BOLD}{}{BOLD:#}\n{}\nwritten to {}\n",
+            scene.title,
+            table(&lines),
+            dir.display()
+        );
+        print_bytes(text.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// The summary as a table for the terminal.
+fn table(lines: &[Line]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_header(["quantity", "value", "unit"]);
+    for line in lines {
+        let value = match line.value {
+            whole if whole == whole.trunc() && whole.abs() < 1e15 => format!("{whole}"),
+            small if small.abs() < 1e-3 || small.abs() >= 1e6 => format!("{small:.4e}"),
+            x => format!("{x:.5}"),
+        };
+        let unit = if line.unit == "1" { "" } else { line.unit };
+        table.add_row([&line.quantity.replace('_', " "), &value, unit]);
+    }
+    if let Some(column) = table.column_mut(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+fn exact(scene: &Path, points: &Path) -> Result<(), Fault> {
+    let scene = files::scene(scene, &[])?;
+    let answer = points::exact_at(&scene, &points.display().to_string(), open(points)?)?;
+    print_bytes(&answer)
+}
+
+fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
+    let spacing = arguments.spacing;
+    let half = arguments.half_length.map_or(0.5, |half| half / spacing);
+    if half > 0.5 {
+        return Err(Fault::Argument {
+            argument: "--half-length",
+            problem: format!("{half} of the spacing"),
+            allowed: "at most half of the spacing",
+        });
+    }
+    let basis = match arguments.basis {
+        BasisName::Linear => Basis::Linear,
+        BasisName::Ugimp => Basis::Ugimp { half_length: [half; 3] },
+        BasisName::Bspline => Basis::BSpline,
+        BasisName::Lme => {
+            Basis::Lme { gamma: arguments.gamma.unwrap_or(1.0), cutoff: arguments.cutoff }
+        }
+    };
+    let read =
+        |path: &Path| Points::read(&path.display().to_string(), open(path)?, &points::COORDINATES);
+    let (nodes, points) = (read(&arguments.nodes)?, read(&arguments.points)?);
+    print_bytes(&points::shape_at(&basis, spacing, &nodes, &points)?)
+}
+
+fn trace(
+    path: &Path,
+    steps: usize,
+    sets: &[String],
+    hex: bool,
+    out: Option<&Path>,
+) -> Result<(), Fault> {
+    let scene = files::scene(path, sets)?;
+    lme_mpm::port::trace::affordable(&scene, steps)?;
+    report::stable(&scene)?;
+    let place = match out {
+        Some(out) if out != Path::new("-") => Some(place_beside(path, out)?),
+        _ => None,
+    };
+    let entries = lme_mpm::port::trace::trace(&scene, steps)
+        .map_err(|broken| Fault::Run { broken, advice: "nothing was written".to_string() })?;
+    let text = lme_mpm::port::trace::csv(&entries, hex)?;
+    match place {
+        None => print_bytes(&text),
+        Some((folder, name)) => files::write_all(&folder, &[(name, text)], &[]),
+    }
+}
+
+/// Folder, made if need be, and name of a file to write, which is not the `input`.
+fn place_beside(input: &Path, out: &Path) -> Result<(PathBuf, String), Fault> {
+    let refuse = |problem: &str| Fault::Argument {
+        argument: "--out",
+        problem: format!("`{}` is {problem}", out.display()),
+        allowed: "a file to write, or - for standard output",
+    };
+    let folder = out.parent().filter(|p| *p != Path::new("")).unwrap_or(Path::new("."));
+    let Some(name) = out.file_name().filter(|_| !out.is_dir()) else {
+        return Err(refuse("a directory"));
+    };
+    if let (Ok(input), Ok(out)) = (input.canonicalize(), out.canonicalize())
+        && input == out
+    {
+        return Err(refuse("the scene itself"));
+    }
+    files::prepare(folder)?;
+    Ok((folder.to_path_buf(), name.to_string_lossy().into_owned()))
+}
+
+fn compare(reference: &Path, theirs: &Path, tolerance: Tolerance, part: bool) -> Result<(), Fault> {
+    if reference == Path::new("-") && theirs == Path::new("-") {
+        return Err(Fault::Argument {
+            argument: "THEIRS",
+            problem: "standard input cannot be both".to_string(),
+            allowed: "a file, or - if the reference is one",
+        });
+    }
+    let read = |path: &Path| check::read(&path.display().to_string(), open(path)?);
+    let (reference, theirs) = (read(reference)?, read(theirs)?);
+    let report = check::compare(&reference.entries, &theirs, tolerance, part)?;
+    match report.divergence {
+        None => print_bytes(report.text().as_bytes()),
+        Some(_) => Err(Fault::Differs(report.text().trim_end().to_string())),
+    }
+}

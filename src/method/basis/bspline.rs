@@ -1,0 +1,40 @@
+//! Quadratic B-splines centred at the nodes, corrected at the ends of the grid
+//! (the extension that the paper names, its reference 18), D = 1, 2, 3.
+
+use super::tensor::Line;
+
+// ANCHOR: bspline
+/// N and dN/dξ of the quadratic B-spline with knots at ±½ and ±3/2,
+/// ξ = (x − x_I)/h.
+pub fn quadratic(xi: f64) -> (f64, f64) {
+    let (distance, sign) = (libm::fabs(xi), if xi < 0.0 { -1.0 } else { 1.0 });
+    if distance <= 0.5 {
+        (0.75 - xi * xi, -2.0 * xi)
+    } else if distance < 1.5 {
+        let foot = 1.5 - distance;
+        (0.5 * foot * foot, -sign * foot)
+    } else {
+        (0.0, 0.0)
+    }
+}
+
+/// Along one axis with `cells` cells: the nearest node and its neighbours.
+///
+/// Within half a cell of an end of the grid one neighbour is missing. Its part
+/// is carried by linear extrapolation, 2 to the end node and −1 to the next,
+/// which keeps ΣN = 1 and ΣN x = x. What is left there is 1 − ξ and ξ: the end
+/// node interpolates, so that a fixed end is fixed by its own node.
+pub fn line(cell: usize, cells: usize, xi: f64, h: f64) -> Line {
+    let mut line = Line::default();
+    let nearest = if xi < 0.5 { cell } else { cell + 1 };
+    if nearest == 0 || nearest == cells {
+        return super::linear::line(cell, xi, h);
+    }
+    let from_nearest = xi - (nearest - cell) as f64;
+    for (node, offset) in [(nearest - 1, -1.0), (nearest, 0.0), (nearest + 1, 1.0)] {
+        let (N, slope) = quadratic(from_nearest - offset);
+        line.push(node, N, slope / h);
+    }
+    line
+}
+// ANCHOR_END: bspline

@@ -1,0 +1,79 @@
+//! Shape functions (§3.3 and §5), all behind one function that fills the table.
+
+pub mod bins;
+pub mod bspline;
+mod kind;
+pub mod linear;
+pub mod lme;
+pub mod scattered;
+mod scratch;
+pub mod support;
+pub mod tensor;
+pub mod ugimp;
+
+pub use kind::Basis;
+pub use scratch::Scratch;
+
+use super::breakdown::Breakdown;
+use super::continuum::shape::Shape;
+use super::grid::{Grid, Located};
+use nalgebra::SVector;
+use tensor::Line;
+
+// ANCHOR: tabulate
+/// Fills the table with N_Ip (–) and ∇N_Ip (1/m) at the positions `x` (m). With local
+/// max-ent `lambda` starts the search for each particle's λ h, and holds what was found.
+///
+/// Errors: the first particle that cannot be served, [`Breakdown::LeftGrid`],
+/// [`Breakdown::NotFinite`] or [`Breakdown::NoBasis`].
+/// Tests: `tests/basis.rs`.
+pub fn fill_from_grid<const D: usize>(
+    shape: &mut Shape<D>,
+    scratch: &mut Scratch<D>,
+    lambda: &mut [SVector<f64, D>],
+    basis: &Basis,
+    grid: &Grid<D>,
+    x: &[SVector<f64, D>],
+) -> Result<(), Breakdown> {
+    shape.clear();
+    for (p, x_p) in x.iter().enumerate() {
+        let at = grid.locate(x_p).ok_or_else(|| outside(p, x_p))?;
+        match basis {
+            Basis::Lme { gamma, cutoff } => {
+                let reach = support::radius(*gamma, *cutoff);
+                support::row(shape, scratch, &mut lambda[p], *gamma, reach, grid, &at)
+                    .map_err(|failure| Breakdown::NoBasis { particle: p, failure })?;
+            }
+            _ => {
+                let lines = lines(basis, grid, &at).ok_or_else(|| outside(p, x_p))?;
+                tensor::row(shape, grid, &lines);
+            }
+        }
+        shape.end_row();
+    }
+    shape.count();
+    Ok(())
+}
+// ANCHOR_END: tabulate
+
+/// Particle p at `x_p` (m) stands outside the grid, reaches beyond it, or nowhere.
+fn outside<const D: usize>(p: usize, x_p: &SVector<f64, D>) -> Breakdown {
+    match x_p.iter().all(|x| x.is_finite()) {
+        true => Breakdown::LeftGrid { particle: p, position: x_p.iter().copied().collect() },
+        false => Breakdown::NotFinite { particle: p, symbol: "position" },
+    }
+}
+
+/// The one-dimensional functions of a tensor-product basis along each axis.
+fn lines<const D: usize>(basis: &Basis, grid: &Grid<D>, at: &Located<D>) -> Option<[Line; D]> {
+    let mut lines = [Line::default(); D];
+    for d in 0..D {
+        let (cell, cells, xi, h) = (at.cell[d], grid.cells[d], at.xi[d], grid.h[d]);
+        lines[d] = match basis {
+            Basis::Ugimp { half_length } => ugimp::line(cell, cells, xi, half_length[d], h)?,
+            Basis::BSpline => bspline::line(cell, cells, xi, h),
+            Basis::Linear | Basis::Lme { .. } => linear::line(cell, xi, h),
+        };
+    }
+    Some(lines)
+}

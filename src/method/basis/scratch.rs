@@ -1,0 +1,24 @@
+//! What a basis keeps from table to table, so that nothing is allocated anew.
+
+use super::bins::Bins;
+use super::lme::Lme;
+use crate::method::cost::Cost;
+
+/// Working space of local max-ent; the other bases need none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scratch<const D: usize> {
+    pub(super) lme: Lme<D>,
+    /// The nodes that the point at hand sees.
+    pub(super) nodes: Vec<usize>,
+    /// Nodes that move, sorted for the search.
+    pub(super) bins: Bins<D>,
+    /// Candidates looked at so far.
+    pub(super) cost: Cost,
+}
+
+impl<const D: usize> Scratch<D> {
+    /// Candidates, exponentials and Newton iterations so far.
+    pub fn cost(&self) -> Cost {
+        self.cost + self.lme.cost
+    }
+}

@@ -1,0 +1,40 @@
+//! uGIMP: linear shape functions averaged over a particle of fixed size
+//! (Bardenhagen & Kober 2004), D = 1, 2, 3.
+
+use super::tensor::Line;
+
+// ANCHOR: ugimp
+/// N and dN/dξ of the hat 1 − |ξ| averaged over [ξ − l, ξ + l], with
+/// ξ = (x − x_I)/h and l = l_p/h, 0 < l ≤ ½.
+///
+/// A parabola over the node, |ξ| < l; the hat's own flank; a parabola at its
+/// foot, up to |ξ| = 1 + l. The slope is continuous.
+pub fn averaged_hat(xi: f64, l: f64) -> (f64, f64) {
+    let (distance, sign) = (libm::fabs(xi), if xi < 0.0 { -1.0 } else { 1.0 });
+    if distance < l {
+        (1.0 - (xi * xi + l * l) / (2.0 * l), -xi / l)
+    } else if distance <= 1.0 - l {
+        (1.0 - distance, -sign)
+    } else if distance < 1.0 + l {
+        let foot = 1.0 + l - distance;
+        (foot * foot / (4.0 * l), -sign * foot / (2.0 * l))
+    } else {
+        (0.0, 0.0)
+    }
+}
+
+/// Along one axis with `cells` cells: the two or three nodes whose averaged hat
+/// is not zero. `None` when the particle reaches beyond the grid, where a node
+/// is missing and ΣN would fall below 1.
+pub fn line(cell: usize, cells: usize, xi: f64, l: f64, h: f64) -> Option<Line> {
+    let mut line = Line::default();
+    for offset in -1..=2 {
+        let (N, slope) = averaged_hat(xi - offset as f64, l);
+        if N > 0.0 {
+            let node = cell.checked_add_signed(offset).filter(|node| *node <= cells)?;
+            line.push(node, N, slope / h);
+        }
+    }
+    Some(line)
+}
+// ANCHOR_END: ugimp

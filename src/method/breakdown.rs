@@ -1,0 +1,77 @@
+//! What can go wrong inside a run, by name.
+//!
+//! A step says what happened to which particle or node ([`Breakdown`]); the time loop
+//! adds once when it was ([`BrokenDown`]).
+
+use super::basis::lme::Failure;
+use thiserror::Error;
+
+/// A point in a run: time step k and time t (s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    pub step: usize,
+    pub time: f64,
+}
+
+impl Moment {
+    /// k = 0, t = 0.
+    pub const START: Moment = Moment { step: 0, time: 0.0 };
+
+    /// The end of time step `step` with the size `dt` (s).
+    pub fn of(step: usize, dt: f64) -> Self {
+        Moment { step, time: step as f64 * dt }
+    }
+}
+
+impl std::fmt::Display for Moment {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "step {}, t = {:e} s", self.step, self.time)
+    }
+}
+
+/// What a step could not do, and for which particle or node.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Breakdown {
+    #[error(
+        "particle {particle} left the grid: it stands at {position:?} m from the body's lower \
+         corner; give it room with `grid.beyond`"
+    )]
+    LeftGrid { particle: usize, position: Vec<f64> },
+    #[error(
+        "the volume of particle {particle} is used up: in one step it would become {:e} times \
+         what it was, and that must stay above 0",
+        1.0 + strain
+    )]
+    Inverted { particle: usize, strain: f64 },
+    #[error("the {symbol} of particle {particle} is not a finite number")]
+    NotFinite { particle: usize, symbol: &'static str },
+    #[error("the {symbol} of node {node} is not a finite number")]
+    NodeNotFinite { node: usize, symbol: &'static str },
+    #[error("local max-ent cannot serve particle {particle}: {failure}")]
+    NoBasis { particle: usize, failure: Failure },
+    #[error(
+        "the consistent mass matrix is singular: {particles} particles do not determine the \
+         velocities of {nodes} nodes; give the cells more particles, or set mass = \"lumped\""
+    )]
+    SingularMass { particles: usize, nodes: usize },
+    #[error(
+        "the run blew up: its energy is {ratio:e} times what start and loads gave it, and \
+         particle {particle} holds the largest share"
+    )]
+    Diverged { particle: usize, ratio: f64 },
+}
+
+impl Breakdown {
+    /// The breakdown with the time step in which it happened.
+    pub fn at(self, moment: Moment) -> BrokenDown {
+        BrokenDown { breakdown: self, moment }
+    }
+}
+
+/// A run that cannot go on: what happened, at which step and time.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("at {moment}: {breakdown}")]
+pub struct BrokenDown {
+    pub breakdown: Breakdown,
+    pub moment: Moment,
+}

@@ -1,0 +1,37 @@
+//! The closed sets that a scene chooses from: method, scheme, mass matrix.
+
+use super::reading::{StepEight, StressUpdate};
+
+/// The method that carries a body through time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// The material point method, by one of its schemes.
+    Mpm(Integrator),
+    /// The optimal transportation meshfree method, which has one scheme.
+    Otm,
+}
+
+/// The scheme that carries the material point method through time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integrator {
+    /// The paper's explicit predictor-corrector, (27)-(29).
+    Newmark(StepEight),
+    /// Forward Euler, (20)-(21).
+    ForwardEuler(StressUpdate),
+    /// Its corrected form, (22)-(23).
+    CorrectedEuler,
+    /// Explicit generalized-α, (24)-(26).
+    GeneralizedAlpha {
+        /// ρ_b, the spectral radius at the bifurcation, 0 to 1.
+        rho_b: f64,
+    },
+}
+
+/// The mass matrix of the nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mass {
+    /// The row sums m_I of (18).
+    Lumped,
+    /// m_IJ of (12) and (13).
+    Consistent,
+}

@@ -1,0 +1,108 @@
+//! Pointwise laws, without any loop over particles or nodes: compatibility (2),
+//! linear elasticity in rate form (3), and conservation of mass (17).
+
+use nalgebra::{SMatrix, SVector};
+
+/// a ⊗ b, the matrix a_i b_j.
+pub fn outer<const D: usize>(a: &SVector<f64, D>, b: &SVector<f64, D>) -> SMatrix<f64, D, D> {
+    SMatrix::from_fn(|i, j| a[i] * b[j])
+}
+
+/// A·b, row by row.
+pub fn applied<const D: usize>(a: &SMatrix<f64, D, D>, b: &SVector<f64, D>) -> SVector<f64, D> {
+    SVector::from_fn(|i, _| (0..D).map(|j| a[(i, j)] * b[j]).sum())
+}
+
+// ANCHOR: strain_rate
+/// (2): ε̇ = ∇ˢv = ½ (∇v + ∇ᵀv).
+///
+/// `grad_v` D×D (1/s); returns D×D (1/s).
+pub fn symmetric_part<const D: usize>(grad_v: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
+    (grad_v + grad_v.transpose()) * 0.5
+}
+// ANCHOR_END: strain_rate
+
+// ANCHOR: elastic
+/// The classical isotropic elasticity tensor D of (3), by its Lamé moduli.
+///
+/// With D = 2 this is plane strain. With D = 1 it is uniaxial *strain*: the
+/// modulus is λ + 2μ, which for ν = 0 is Young's modulus E, the modulus of a
+/// slender bar. A bar with ν ≠ 0 would need uniaxial stress instead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearElastic {
+    /// λ = E ν / ((1 + ν)(1 − 2ν)) (Pa).
+    pub lambda: f64,
+    /// μ = E / (2 (1 + ν)) (Pa).
+    pub mu: f64,
+}
+
+impl LinearElastic {
+    /// From Young's modulus E > 0 (Pa) and Poisson's ratio −1 < ν < ½ (–).
+    pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Self {
+        let (e, nu) = (youngs_modulus, poisson_ratio);
+        LinearElastic {
+            lambda: e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+            mu: e / (2.0 * (1.0 + nu)),
+        }
+    }
+
+    /// λ + 2μ (Pa), the modulus of a plane wave, c = √((λ + 2μ) / ρ).
+    pub fn p_wave_modulus(&self) -> f64 {
+        self.lambda + 2.0 * self.mu
+    }
+
+    /// (3) over one step: Δσ = D : Δε = λ tr(Δε) 1 + 2μ Δε  (Pa).
+    pub fn stress_increment<const D: usize>(
+        &self,
+        d_eps: &SMatrix<f64, D, D>,
+    ) -> SMatrix<f64, D, D> {
+        SMatrix::identity() * (self.lambda * d_eps.trace()) + d_eps * (2.0 * self.mu)
+    }
+
+    /// ½ σ : D⁻¹ : σ, the elastic energy per volume (J/m³); (3) inverted gives
+    /// D⁻¹ : σ = (σ − λ tr(σ) / (dλ + 2μ) 1) / 2μ in d dimensions.
+    pub fn energy_density<const D: usize>(&self, sigma: &SMatrix<f64, D, D>) -> f64 {
+        let share = self.lambda / (D as f64 * self.lambda + 2.0 * self.mu);
+        let eps = (sigma - SMatrix::identity() * (share * sigma.trace())) * (1.0 / (2.0 * self.mu));
+        0.5 * sigma.dot(&eps)
+    }
+}
+// ANCHOR_END: elastic
+
+// ANCHOR: increment
+/// f = 1 + G and det f of a displacement gradient G of one step (–).
+pub fn increment<const D: usize>(G: &SMatrix<f64, D, D>) -> (SMatrix<f64, D, D>, f64) {
+    let f = SMatrix::<f64, D, D>::identity() + G;
+    let minor =
+        |i: usize, j: usize, k: usize, l: usize| f[(i, k)] * f[(j, l)] - f[(i, l)] * f[(j, k)];
+    let J = match D {
+        1 => f[(0, 0)],
+        2 => minor(0, 1, 0, 1),
+        _ => {
+            f[(0, 0)] * minor(1, 2, 1, 2) - f[(0, 1)] * minor(1, 2, 0, 2)
+                + f[(0, 2)] * minor(1, 2, 0, 1)
+        }
+    };
+    (f, J)
+}
+
+/// Δε = sym(G (1 + G/2)⁻¹), the strain increment at the middle of a step of finite
+/// size (–); `None` where 1 + G/2 has no inverse.
+///
+/// In 1D it is G/(1 + G/2), the logarithm ln(1 + G) but for G³/12. Of a rotation by
+/// less than half a turn it is zero.
+pub fn midpoint_strain<const D: usize>(G: &SMatrix<f64, D, D>) -> Option<SMatrix<f64, D, D>> {
+    let middle = (SMatrix::<f64, D, D>::identity() + G * 0.5).try_inverse()?;
+    Some(symmetric_part(&(G * middle)))
+}
+// ANCHOR_END: increment
+
+// ANCHOR: density
+/// (17) over one step: ρ ← ρ / (1 + tr Δε)  (kg/m³).
+///
+/// `None` when 1 + tr Δε ≤ 0: nothing would be left of the volume.
+pub fn density<const D: usize>(rho: f64, d_eps: &SMatrix<f64, D, D>) -> Option<f64> {
+    let stretch = 1.0 + d_eps.trace();
+    (stretch > 0.0).then(|| rho / stretch)
+}
+// ANCHOR_END: density

@@ -1,0 +1,88 @@
+//! Loads of a scene: body force (10) and traction on a layer of particles (11).
+
+use super::state::Particles;
+use crate::method::exact::manufactured::Manufactured;
+use nalgebra::SVector;
+
+/// What acts on the particles from outside; a scene without loads has none of
+/// this.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loads<const D: usize> {
+    pub body: Option<BodyForce<D>>,
+    pub traction: Option<Traction<D>>,
+}
+
+/// b_p, force per mass (m/s²).
+#[derive(Clone, Debug, PartialEq)]
+pub enum BodyForce<const D: usize> {
+    /// b min(t/T, 1).
+    Uniform { b: SVector<f64, D>, ramp: f64 },
+    /// That of a manufactured solution at the particles' first places X_p (m).
+    Manufactured { solution: Manufactured, X: Vec<f64> },
+}
+
+/// Particles of the layers behind the loaded sides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traction<const D: usize> {
+    /// Particle p, and the full force on it (N): m_p h⁻¹ t^s_p of (11) is the
+    /// traction times the particle's share of the side at t = 0.
+    pub layer: Vec<(usize, SVector<f64, D>)>,
+    /// T, the time over which the load grows (s).
+    pub ramp: f64,
+}
+
+// ANCHOR: loads
+/// min(t/T, 1), and 1 for T = 0: how much of a load acts at time `t`.
+pub fn ramp(t: f64, T: f64) -> f64 {
+    if t < T { t / T } else { 1.0 }
+}
+
+impl<const D: usize> BodyForce<D> {
+    /// b_p at time `t` (m/s²).
+    pub fn at(&self, p: usize, t: f64) -> SVector<f64, D> {
+        match self {
+            BodyForce::Uniform { b, ramp: T } => b * ramp(t, *T),
+            BodyForce::Manufactured { solution, X } => {
+                SVector::repeat(solution.body_force(X[p], t))
+            }
+        }
+    }
+}
+
+impl<const D: usize> Traction<D> {
+    /// The loaded particles with the force on each (N).
+    pub fn at(&self, t: f64) -> impl Iterator<Item = (usize, SVector<f64, D>)> {
+        let share = ramp(t, self.ramp);
+        self.layer.iter().map(move |(p, force)| (*p, force * share))
+    }
+}
+// ANCHOR_END: loads
+
+impl<const D: usize> Loads<D> {
+    /// Σ_p f_p · Δx_p, the work of the loads over a step from `t` to `t + dt` (J),
+    /// with the mean of both ends; `before` holds x_p at `t` (m).
+    ///
+    /// Taken with what the particles have moved by, not with their velocity:
+    /// beside a fixed node the two differ.
+    pub fn work(
+        &self,
+        particle: &Particles<D>,
+        before: &[SVector<f64, D>],
+        t: f64,
+        dt: f64,
+    ) -> f64 {
+        let mut work = 0.0;
+        if let Some(body) = &self.body {
+            for p in 0..particle.len() {
+                let mean = (body.at(p, t) + body.at(p, t + dt)) * 0.5;
+                work += mean.dot(&(particle.x[p] - before[p])) * particle.m[p];
+            }
+        }
+        if let Some(traction) = &self.traction {
+            for ((p, force), (_, next)) in traction.at(t).zip(traction.at(t + dt)) {
+                work += ((force + next) * 0.5).dot(&(particle.x[p] - before[p]));
+            }
+        }
+        work
+    }
+}

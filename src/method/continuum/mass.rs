@@ -1,0 +1,260 @@
+//! The consistent mass matrix (13), for scenes with `mass = "consistent"`.
+
+use super::shape::Shape;
+use super::state::Particles;
+use crate::method::breakdown::Breakdown;
+use crate::method::cost::Cost;
+use nalgebra::{DVector, SVector};
+use nalgebra_sparse::factorization::{CscCholesky, CscSymbolicCholesky};
+use nalgebra_sparse::pattern::SparsityPattern;
+
+/// A node counts as light when m_II < LIGHT^D m_I: its particles see it from
+/// afar only.
+///
+/// With m_II/m_I = ε the node's own frequency is c/(εh): no usable time step
+/// would be stable, and for ε → 0 the matrix is singular. The row and column of
+/// a light node are lumped, which keeps the matrix symmetric and its row sums.
+const LIGHT: f64 = 0.25;
+
+/// A pivot below this share of its diagonal entry counts as zero.
+const SINGULAR: f64 = 1e-12;
+
+/// The mass matrix that the nodes' velocities and accelerations are solved with.
+#[derive(Clone, Debug)]
+pub enum MassMatrix<const D: usize> {
+    /// m_I of (18), which the nodes hold themselves.
+    Lumped,
+    /// m_IJ of (13).
+    Consistent(Box<ConsistentMass<D>>),
+}
+
+impl<const D: usize> MassMatrix<D> {
+    /// Makes m_IJ of (13); `m` is m_I (kg). The lumped matrix has nothing to make.
+    ///
+    /// Errors: [`Breakdown::SingularMass`].
+    pub fn assemble(
+        &mut self,
+        particle: &Particles<D>,
+        shape: &Shape<D>,
+        m: &[f64],
+    ) -> Result<(), Breakdown> {
+        match self {
+            MassMatrix::Lumped => Ok(()),
+            MassMatrix::Consistent(mass) => mass.assemble(particle, shape, m),
+        }
+    }
+
+    /// `out`_I = m_I Σ_J (m⁻¹)_IJ q_J, which is q_I itself with the lumped matrix; see
+    /// [`ConsistentMass::solve`].
+    pub fn solve(&mut self, out: &mut [SVector<f64, D>], q: &[SVector<f64, D>], m: &[f64]) {
+        match self {
+            MassMatrix::Lumped => out.copy_from_slice(q),
+            MassMatrix::Consistent(mass) => mass.solve(out, q, m),
+        }
+    }
+
+    /// Factorisations and solutions so far.
+    pub fn cost(&self) -> Cost {
+        match self {
+            MassMatrix::Lumped => Cost::default(),
+            MassMatrix::Consistent(mass) => mass.cost,
+        }
+    }
+}
+
+/// m_IJ with its Cholesky factors, one for each different set of fixed nodes.
+#[derive(Clone, Debug)]
+pub struct ConsistentMass<const D: usize> {
+    /// Which nodes share a particle; every node shares one with itself.
+    pattern: SparsityPattern,
+    /// m_IJ (kg), column by column.
+    values: Vec<f64>,
+    /// The same with the equations of fixed nodes taken out.
+    held: Vec<f64>,
+    /// m_II (kg), before light nodes are lumped.
+    diagonal: Vec<f64>,
+    /// Which nodes are light.
+    light: Vec<bool>,
+    systems: Vec<System>,
+    /// The system that serves component i.
+    system_of: [usize; D],
+    column: DVector<f64>,
+    /// Factorisations and solutions so far.
+    pub cost: Cost,
+}
+
+/// The equations of the components that share one set of fixed nodes.
+#[derive(Clone, Debug)]
+struct System {
+    fixed: Vec<bool>,
+    factor: Option<CscCholesky<f64>>,
+}
+
+impl<const D: usize> ConsistentMass<D> {
+    /// An empty matrix for `nodes` nodes, of which those in `fixed` have no
+    /// velocity component i.
+    pub fn blank(nodes: usize, fixed: &[(usize, usize)]) -> Self {
+        let mut systems: Vec<System> = Vec::new();
+        let system_of = std::array::from_fn(|i| {
+            let mut held = vec![false; nodes];
+            for (I, _) in fixed.iter().filter(|(_, component)| *component == i) {
+                held[*I] = true;
+            }
+            systems.iter().position(|system| system.fixed == held).unwrap_or_else(|| {
+                systems.push(System { fixed: held, factor: None });
+                systems.len() - 1
+            })
+        });
+        ConsistentMass {
+            pattern: SparsityPattern::zeros(nodes, nodes),
+            values: Vec::new(),
+            held: Vec::new(),
+            diagonal: vec![0.0; nodes],
+            light: vec![false; nodes],
+            systems,
+            system_of,
+            column: DVector::zeros(nodes),
+            cost: Cost::default(),
+        }
+    }
+
+    // ANCHOR: consistent_mass
+    /// (13): m_IJ = Σ_p N_Ip m_p N_Jp  (kg), factorised; `m` is m_I (kg).
+    ///
+    /// Errors: [`Breakdown::SingularMass`] when it is not positive definite: the particles
+    /// do not determine the velocity of every node.
+    pub fn assemble(
+        &mut self,
+        particle: &Particles<D>,
+        shape: &Shape<D>,
+        m: &[f64],
+    ) -> Result<(), Breakdown> {
+        self.find_light(particle, shape, m);
+        if !self.sum(particle, shape) {
+            self.couple(shape, m.len());
+            self.sum(particle, shape);
+        }
+        for n in 0..self.systems.len() {
+            if self.factorise(n, m).is_none() {
+                let nodes = m.iter().filter(|m_I| **m_I > 0.0).count();
+                return Err(Breakdown::SingularMass { particles: particle.len(), nodes });
+            }
+        }
+        self.cost.factorizations += self.systems.len() as u64;
+        Ok(())
+    }
+
+    /// Which nodes have m_II = Σ_p N_Ip m_p N_Ip below LIGHT^D m_I.
+    fn find_light(&mut self, particle: &Particles<D>, shape: &Shape<D>, m: &[f64]) {
+        self.diagonal.fill(0.0);
+        for (I, p, N_Ip, _) in shape.pairs() {
+            self.diagonal[I] += N_Ip * particle.m[p] * N_Ip;
+        }
+        let bound: f64 = (0..D).map(|_| LIGHT).product();
+        for I in 0..m.len() {
+            self.light[I] = self.diagonal[I] < bound * m[I];
+        }
+    }
+
+    /// Σ_p over all pairs of nodes of a particle; false where the pattern lacks
+    /// one. A pair with a light node goes to the diagonal.
+    fn sum(&mut self, particle: &Particles<D>, shape: &Shape<D>) -> bool {
+        self.values.fill(0.0);
+        for (I, p, N_Ip, _) in shape.pairs() {
+            for (J, N_Jp, _) in shape.of(p) {
+                let column = if self.light[I] || self.light[J] { I } else { J };
+                let Some(k) = place(&self.pattern, I, column) else { return false };
+                self.values[k] += N_Ip * particle.m[p] * N_Jp;
+            }
+        }
+        true
+    }
+    // ANCHOR_END: consistent_mass
+
+    /// The pattern of this table of shape functions; the factors go with the
+    /// old one.
+    fn couple(&mut self, shape: &Shape<D>, nodes: usize) {
+        let mut coupled: Vec<Vec<usize>> = (0..nodes).map(|I| vec![I]).collect();
+        for (I, p, _, _) in shape.pairs() {
+            coupled[I].extend(shape.of(p).map(|(J, _, _)| J));
+        }
+        let (mut offsets, mut indices) = (vec![0], Vec::new());
+        for list in &mut coupled {
+            list.sort_unstable();
+            list.dedup();
+            indices.append(list);
+            offsets.push(indices.len());
+        }
+        self.values = vec![0.0; indices.len()];
+        self.held = vec![0.0; indices.len()];
+        // Sorted and without doubles: this cannot fail.
+        if let Ok(pattern) =
+            SparsityPattern::try_from_offsets_and_indices(nodes, nodes, offsets, indices)
+        {
+            self.pattern = pattern;
+        }
+        for system in &mut self.systems {
+            system.factor = None;
+        }
+    }
+
+    /// Makes the factor of system `n`, in which fixed nodes and those without mass stand
+    /// alone with 1 on the diagonal; `None` when a pivot is zero.
+    fn factorise(&mut self, n: usize, m: &[f64]) -> Option<()> {
+        let system = &mut self.systems[n];
+        let alone = |I: usize| system.fixed[I] || m[I] == 0.0;
+        let (offsets, rows) = (self.pattern.major_offsets(), self.pattern.minor_indices());
+        for J in 0..m.len() {
+            for k in offsets[J]..offsets[J + 1] {
+                let I = rows[k];
+                let single = if I == J { 1.0 } else { 0.0 };
+                self.held[k] = if alone(I) || alone(J) { single } else { self.values[k] };
+            }
+        }
+        let factor = match system.factor.take() {
+            Some(mut factor) => factor.refactor(&self.held).map(|()| factor),
+            None => {
+                let symbolic = CscSymbolicCholesky::factor(self.pattern.clone());
+                CscCholesky::factor_numerical(symbolic, &self.held)
+            }
+        }
+        .ok()?;
+        let factor = system.factor.insert(factor);
+        for J in 0..m.len() {
+            let entry = place(&self.pattern, J, J).map_or(0.0, |k| self.held[k]);
+            let pivot = factor.l().col(J).values()[0];
+            if pivot * pivot < SINGULAR * entry {
+                return None;
+            }
+        }
+        Some(())
+    }
+
+    // ANCHOR: solve
+    /// `out`_I = m_I Σ_J (m⁻¹)_IJ q_J for a nodal momentum or force `q` that is zero where
+    /// the boundary is fixed; `m` is m_I (kg).
+    ///
+    /// Afterwards `out`_I / m_I is the nodal velocity or acceleration that solves (12), so
+    /// that all that follows is written once for both mass matrices. Since Σ_J m_IJ = m_I,
+    /// the sums Σ_I `out`_I and Σ_I q_I of a free body are the same.
+    fn solve(&mut self, out: &mut [SVector<f64, D>], q: &[SVector<f64, D>], m: &[f64]) {
+        for i in 0..D {
+            for I in 0..m.len() {
+                self.column[I] = q[I][i];
+            }
+            if let Some(factor) = &self.systems[self.system_of[i]].factor {
+                factor.solve_mut(&mut self.column);
+            }
+            for I in 0..m.len() {
+                out[I][i] = m[I] * self.column[I];
+            }
+        }
+        self.cost.solves += D as u64;
+    }
+    // ANCHOR_END: solve
+}
+
+/// Where m_IJ stands among the values of a matrix with this pattern.
+fn place(pattern: &SparsityPattern, I: usize, J: usize) -> Option<usize> {
+    pattern.lane(J).binary_search(&I).ok().map(|n| pattern.major_offsets()[J] + n)
+}

@@ -1,0 +1,134 @@
+//! What particles and nodes carry (§2, Table 1, and §3.3).
+//!
+//! One array per symbol of the paper; the index is the subscript, so `m_p` is
+//! `particle.m[p]` and `m_I` is `node.m[I]`. Positions are measured from the
+//! body's lower corner, so moving a scene in space changes no digit.
+
+use crate::method::cost::Cost;
+use nalgebra::{SMatrix, SVector};
+
+// ANCHOR: particles
+/// Material points: everything that is remembered from step to step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Particles<const D: usize> {
+    /// m_p, mass (kg).
+    pub m: Vec<f64>,
+    /// x_p, position (m).
+    pub x: Vec<SVector<f64, D>>,
+    /// v_p, velocity (m/s).
+    pub v: Vec<SVector<f64, D>>,
+    /// ρ_p, density (kg/m³).
+    pub rho: Vec<f64>,
+    /// σ_p, Cauchy stress (Pa).
+    pub sigma: Vec<SMatrix<f64, D, D>>,
+    /// Δε_p, strain increment of the step (–).
+    pub d_eps: Vec<SMatrix<f64, D, D>>,
+    /// λ_p h, the multiplier of the last table (–), from where the next search starts;
+    /// of local max-ent only.
+    pub lambda: Vec<SVector<f64, D>>,
+    /// a_p, acceleration (m/s²); of generalized-α only.
+    pub a: Vec<SVector<f64, D>>,
+    /// F_p, deformation gradient (–); of OTM only.
+    pub F: Vec<SMatrix<f64, D, D>>,
+}
+// ANCHOR_END: particles
+
+// ANCHOR: nodes
+/// Grid points: scratch paper, wiped in step 2 of every time step. With OTM they
+/// are the body's own and carry its motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nodes<const D: usize> {
+    /// m_I, lumped mass (kg).
+    pub m: Vec<f64>,
+    /// p_I, momentum (kg m/s).
+    pub p: Vec<SVector<f64, D>>,
+    /// v_I = p_I / m_I, velocity (m/s).
+    pub v: Vec<SVector<f64, D>>,
+    /// f_I, force (N).
+    pub f: Vec<SVector<f64, D>>,
+    /// m_I v_I (kg m/s), where v_I solves (12): p_I itself with the lumped mass matrix.
+    pub mv: Vec<SVector<f64, D>>,
+    /// m_I a_I (N), where a_I solves (12): f_I itself with the lumped mass matrix.
+    pub ma: Vec<SVector<f64, D>>,
+    /// a_I of k and of k+1 (m/s²); of generalized-α only.
+    pub a: Vec<SVector<f64, D>>,
+    pub a_next: Vec<SVector<f64, D>>,
+    /// x_I, position (m); of OTM only, whose nodes move.
+    pub x: Vec<SVector<f64, D>>,
+    /// The loads that were summed up here.
+    pub cost: Cost,
+}
+// ANCHOR_END: nodes
+
+/// What carries the body's mass and motion: its masses, places and velocities.
+pub struct Carriers<'a, const D: usize> {
+    pub m: &'a [f64],
+    pub x: &'a [SVector<f64, D>],
+    pub v: &'a [SVector<f64, D>],
+}
+
+impl<const D: usize> Particles<D> {
+    /// The particles as carriers of mass and motion.
+    pub fn carriers(&self) -> Carriers<'_, D> {
+        Carriers { m: &self.m, x: &self.x, v: &self.v }
+    }
+
+    /// Bytes of state that one particle carries: 48 in 1D, where every tensor
+    /// is a single number.
+    pub const BYTES: usize = 2 * size_of::<f64>()
+        + 2 * size_of::<SVector<f64, D>>()
+        + 2 * size_of::<SMatrix<f64, D, D>>();
+
+    /// Particles without mass, at rest and free of stress at positions `x` (m), with
+    /// density `rho` (kg/m³).
+    pub fn at_rest(x: Vec<SVector<f64, D>>, rho: f64) -> Self {
+        let n = x.len();
+        Particles {
+            m: vec![0.0; n],
+            x,
+            v: vec![SVector::zeros(); n],
+            rho: vec![rho; n],
+            sigma: vec![SMatrix::zeros(); n],
+            d_eps: vec![SMatrix::zeros(); n],
+            lambda: Vec::new(),
+            a: Vec::new(),
+            F: Vec::new(),
+        }
+    }
+
+    /// N_p, the number of particles.
+    pub fn len(&self) -> usize {
+        self.m.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.m.is_empty()
+    }
+}
+
+impl<const D: usize> Nodes<D> {
+    /// `n` nodes that carry nothing.
+    pub fn blank(n: usize) -> Self {
+        Nodes {
+            m: vec![0.0; n],
+            p: vec![SVector::zeros(); n],
+            v: vec![SVector::zeros(); n],
+            f: vec![SVector::zeros(); n],
+            mv: vec![SVector::zeros(); n],
+            ma: vec![SVector::zeros(); n],
+            a: Vec::new(),
+            a_next: Vec::new(),
+            x: Vec::new(),
+            cost: Cost::default(),
+        }
+    }
+
+    /// N_n, the number of nodes.
+    pub fn len(&self) -> usize {
+        self.m.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.m.is_empty()
+    }
+}

@@ -1,0 +1,112 @@
+//! What is measured on a run (§6): the error (39), energy and momentum.
+
+use crate::method::continuum::law::LinearElastic;
+use crate::method::continuum::state::{Carriers, Particles};
+use nalgebra::SVector;
+
+// ANCHOR: rms
+/// (39) with the square that the paper's print lacks:
+/// RMS = √(1/N Σ (φ − φ̂)²), in the unit of φ; 0 for no pairs.
+///
+/// Test: `rms_has_its_square` in `tests/analytical.rs`.
+pub fn rms(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+    let (mut sum, mut n) = (0.0, 0.0);
+    for (phi, phi_hat) in pairs {
+        sum += (phi - phi_hat) * (phi - phi_hat);
+        n += 1.0;
+    }
+    if n == 0.0 { 0.0 } else { libm::sqrt(sum / n) }
+}
+// ANCHOR_END: rms
+
+// ANCHOR: observed_order
+/// An order of convergence as observed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Order {
+    /// The exponent of error ∝ h^slope.
+    pub slope: f64,
+    /// Half the width of its 95% interval.
+    pub half_width: f64,
+}
+
+impl Order {
+    pub fn contains(&self, order: f64) -> bool {
+        (self.slope - order).abs() <= self.half_width
+    }
+}
+
+impl std::fmt::Display for Order {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:.4} ± {:.4}", self.slope, self.half_width)
+    }
+}
+
+/// The line through (ln h, ln error) by least squares; its slope with the 95%
+/// interval of Student's t for n − 2 degrees of freedom. 3 to 12 points, all
+/// above 0.
+pub fn observed_order(h: &[f64], error: &[f64]) -> Order {
+    /// t of 97.5% for 1, 2, … degrees of freedom.
+    const STUDENT: [f64; 10] =
+        [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];
+    let n = h.len() as f64;
+    let (x, y): (Vec<f64>, Vec<f64>) =
+        h.iter().zip(error).map(|(h, e)| (libm::log(*h), libm::log(*e))).unzip();
+    let (mean_x, mean_y) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+    let cross: f64 = x.iter().zip(&y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
+    let square: f64 = x.iter().map(|x| (x - mean_x) * (x - mean_x)).sum();
+    let slope = cross / square;
+    let rest = |(x, y): (&f64, &f64)| {
+        let off = y - mean_y - slope * (x - mean_x);
+        off * off
+    };
+    let residual: f64 = x.iter().zip(&y).map(rest).sum();
+    let freedom = h.len().saturating_sub(2);
+    let t = STUDENT.get(freedom.wrapping_sub(1)).copied().unwrap_or(f64::NAN);
+    let half_width = t * libm::sqrt(residual / (freedom as f64 * square));
+    Order { slope, half_width }
+}
+// ANCHOR_END: observed_order
+
+// ANCHOR: energy
+/// ½ σ_p : D⁻¹ : σ_p m_p / ρ_p (J).
+pub fn strain_energy_of<const D: usize>(
+    particle: &Particles<D>,
+    law: &LinearElastic,
+    p: usize,
+) -> f64 {
+    law.energy_density(&particle.sigma[p]) * (particle.m[p] / particle.rho[p])
+}
+
+/// Σ ½ m |v|² (J), over particles, or over the nodes of OTM.
+pub fn kinetic_energy<const D: usize>(Carriers { m, v, .. }: &Carriers<D>) -> f64 {
+    (0..m.len()).map(|n| 0.5 * m[n] * v[n].dot(&v[n])).sum()
+}
+
+/// Σ_p of the strain energy (J).
+pub fn strain_energy<const D: usize>(particle: &Particles<D>, law: &LinearElastic) -> f64 {
+    (0..particle.len()).map(|p| strain_energy_of(particle, law, p)).sum()
+}
+// ANCHOR_END: energy
+
+/// Σ m (x_i v_j − x_j v_i) about the body's lower corner (kg m²/s): one
+/// number in 2D, three in 3D (for x, y, z), none in 1D.
+pub fn angular_momentum<const D: usize>(Carriers { m, x, v }: &Carriers<D>) -> Vec<f64> {
+    let planes: &[(usize, usize)] = match D {
+        1 => &[],
+        2 => &[(0, 1)],
+        _ => &[(1, 2), (2, 0), (0, 1)],
+    };
+    let about = |&(i, j): &(usize, usize)| {
+        (0..m.len()).map(|n| m[n] * (x[n][i] * v[n][j] - x[n][j] * v[n][i])).sum()
+    };
+    planes.iter().map(about).collect()
+}
+
+/// Σ m v (kg m/s).
+pub fn momentum<const D: usize>(Carriers { m, v, .. }: &Carriers<D>) -> SVector<f64, D> {
+    let mut sum = SVector::zeros();
+    for n in 0..m.len() {
+        sum += v[n] * m[n];
+    }
+    sum
+}

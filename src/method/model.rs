@@ -1,0 +1,113 @@
+//! What stays the same from step to step, and what changes.
+
+use super::basis::{Basis, Scratch};
+use super::choice::{Integrator, Mass, Method};
+use super::continuum::law::LinearElastic;
+use super::continuum::loads::Loads;
+use super::continuum::mass::{ConsistentMass, MassMatrix};
+use super::continuum::shape::Shape;
+use super::continuum::state::{Carriers, Nodes, Particles};
+use super::cost::Cost;
+use super::grid::Grid;
+use nalgebra::{SMatrix, SVector};
+
+/// The fixed components of nodes, as pairs (I, i).
+pub type Fixed = [(usize, usize)];
+
+/// All that stays the same from step to step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model<const D: usize> {
+    pub grid: Grid<D>,
+    pub basis: Basis,
+    pub law: LinearElastic,
+    /// Node I has zero velocity component i.
+    pub fixed: Vec<(usize, usize)>,
+    pub loads: Option<Loads<D>>,
+    pub method: Method,
+    pub mass: Mass,
+    /// Δt (s).
+    pub dt: f64,
+    /// N_t, the number of time steps.
+    pub steps: usize,
+}
+
+impl<const D: usize> Model<D> {
+    /// Bytes of state that one particle carries in this model.
+    pub fn bytes_per_particle(&self) -> usize {
+        let (vector, matrix) = (size_of::<SVector<f64, D>>(), size_of::<SMatrix<f64, D, D>>());
+        let of_basis = match self.basis {
+            Basis::Lme { .. } => vector, // λ_p
+            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline => 0,
+        };
+        let of_method = match self.method {
+            Method::Mpm(Integrator::GeneralizedAlpha { .. }) => vector, // a_p
+            Method::Mpm(_) => 0,
+            Method::Otm => matrix, // F_p
+        };
+        Particles::<D>::BYTES + of_basis + of_method
+    }
+}
+
+/// All that changes: particles, nodes, and the table of shape functions between them.
+#[derive(Clone, Debug)]
+pub struct State<const D: usize> {
+    pub particle: Particles<D>,
+    pub node: Nodes<D>,
+    pub shape: Shape<D>,
+    pub mass: MassMatrix<D>,
+    /// What the basis keeps for its next table.
+    pub scratch: Scratch<D>,
+    /// Time steps taken.
+    pub steps: u64,
+}
+
+impl<const D: usize> State<D> {
+    /// The state of `particle` before its first table, with all arrays that the model's
+    /// method, scheme and basis need. OTM brings its nodes' places `x` (m); those of MPM
+    /// are the grid's.
+    pub fn new(model: &Model<D>, mut particle: Particles<D>, x: Vec<SVector<f64, D>>) -> Self {
+        let particles = particle.len();
+        let zeros = |count: usize| vec![SVector::zeros(); count];
+        let nodes = match model.method {
+            Method::Mpm(_) => model.grid.nodes(),
+            Method::Otm => x.len(),
+        };
+        let mut node = Nodes::blank(nodes);
+        match model.method {
+            Method::Mpm(Integrator::GeneralizedAlpha { .. }) => {
+                particle.a = zeros(particles);
+                (node.a, node.a_next) = (zeros(nodes), zeros(nodes));
+            }
+            Method::Mpm(_) => {}
+            Method::Otm => {
+                particle.F = vec![SMatrix::identity(); particles];
+                node.x = x;
+            }
+        }
+        if let Basis::Lme { .. } = model.basis {
+            particle.lambda = zeros(particles);
+        }
+        let mass = match model.mass {
+            Mass::Lumped => MassMatrix::Lumped,
+            Mass::Consistent => {
+                MassMatrix::Consistent(Box::new(ConsistentMass::blank(nodes, &model.fixed)))
+            }
+        };
+        let shape = Shape::blank(particles);
+        State { particle, node, shape, mass, scratch: Scratch::default(), steps: 0 }
+    }
+
+    /// What carries the body's mass and motion: the particles of MPM, the nodes of OTM.
+    pub fn carriers(&self, method: Method) -> Carriers<'_, D> {
+        match method {
+            Method::Mpm(_) => self.particle.carriers(),
+            Method::Otm => Carriers { m: &self.node.m, x: &self.node.x, v: &self.node.v },
+        }
+    }
+
+    /// What the run has cost so far.
+    pub fn cost(&self) -> Cost {
+        let steps = Cost { steps: self.steps, ..Cost::default() };
+        steps + self.shape.cost + self.scratch.cost() + self.mass.cost() + self.node.cost
+    }
+}

@@ -1,0 +1,64 @@
+//! Every place where the paper can be read in more than one way, or is
+//! misprinted, as a named type with its evidence.
+//!
+//! Notes without a type, because only one reading runs:
+//!
+//! * **Order of the stress update** of the Algorithm. It never says when (3) is
+//!   applied. It stands between steps 6 and 7 here: the force of step 7 needs
+//!   σ at k+1, and (3) needs Δε of step 5.
+//! * **Step 1, (28).** The algorithm writes (1 − γ) Σ f N / m Δt, the text
+//!   writes it with Δt in front. They are the same.
+//! * **Step 2** discards the nodal values, among them the p_I of k that step 8
+//!   as printed adds to. What step 8 adds to here is the momentum that step 3
+//!   has mapped.
+//! * **Step 9** is titled predictor; it is the corrector (29).
+//! * **Start.** The nodal values at k = 0 are not defined by the paper: steps
+//!   2 to 8 run once with Δt = 0.
+//! * **(39)** lacks the square under the sum; see [`crate::method::measure::rms`].
+//! * **Appendix A** says that the ends radiate; both reflect. See
+//!   [`crate::method::exact::riemann`].
+
+/// Step 8: how far the nodal momentum is carried before the next step 1.
+///
+/// The predictor (27) adds Δt p_I/m_I + ½Δt² f_I/m_I, so p_I must be the
+/// momentum *at* k+1. The mapped p_I holds the predicted velocity, short of
+/// γ f_I Δt.
+///
+/// Neither reading makes x_p second order without condition. The next step 3
+/// maps the particles' velocity anew, which has grown by Σ_I N a_I Δt, while
+/// (27) moved x_p with a_I itself; a remainder of first order in Δt is left,
+/// Σ_I N_Ip (a_I − ā_I) Δt² per step, where ā_I is the particles' acceleration
+/// mapped back to the nodes. It is O(h²) on smooth data with evenly placed
+/// particles, and all of the error in a single cell.
+///
+/// Tests: `step_eight_*` in `tests/convergence.rs`,
+/// `one_particle_shows_the_remapping_term` in `tests/analytical.rs`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum StepEight {
+    /// p_I ← p_I + γ f_I Δt: the momentum at k+1, second order in time but for
+    /// the remainder above.
+    #[default]
+    SecondOrder,
+    /// p_I ← p_I + f_I Δt, as the paper prints it: half of it enters the
+    /// displacement twice, which is then of first order. The velocity does not
+    /// see p_I and stays of second order.
+    AsPrinted,
+}
+
+/// Forward Euler: when the stress is updated, which the paper leaves open.
+///
+/// On particles that do not leave their places, `First` and `ModifiedLast` are
+/// one leapfrog, the same as Newmark's method, with the time labels of velocity
+/// and stress shifted; `Last` takes the strain from the nodes' own velocity,
+/// which differs from that of the particles mapped anew.
+///
+/// Tests: `integrators_are_one_leapfrog` in `tests/integrators.rs`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StressUpdate {
+    /// Before the forces, from the momentum as mapped.
+    First,
+    /// After the particles have moved, from the advanced nodal momentum.
+    Last,
+    /// After the particles have moved, from their momentum mapped anew.
+    ModifiedLast,
+}

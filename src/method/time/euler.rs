@@ -1,0 +1,87 @@
+//! Forward Euler, (20)-(21), with its three orders of the stress update, and
+//! the corrected form, (22)-(23).
+//!
+//! The nodal momentum is advanced first, and the particles move with the
+//! advanced one. (With the old momentum, as (21) is printed, no step is
+//! stable.) Then (20)-(21) and (22)-(23) are the same sums; they differ in what
+//! is divided by m_I. The corrected form divides N_Ip, which no tiny mass can
+//! blow up, and takes the strain from the momentum of the particles, mapped
+//! anew.
+
+use super::steps::*;
+use crate::method::breakdown::Breakdown;
+use crate::method::model::{Model, State};
+use crate::method::reading::StressUpdate;
+
+/// The number of steps of both forms.
+pub const STEPS: usize = 7;
+
+// ANCHOR: forward_euler
+/// Step `n` of forward Euler, 1 to 7, in the time step from k to k+1; loads are those of
+/// k, at `t` (s).
+pub fn forward_step<const D: usize>(
+    n: usize,
+    State { particle, node, shape, mass, scratch, .. }: &mut State<D>,
+    model: &Model<D>,
+    order: StressUpdate,
+    dt: f64,
+    t: f64,
+) -> Result<(), Breakdown> {
+    match n {
+        1 => {
+            discard(node);
+            tabulate(shape, scratch, particle, model)?; // N_Ip of k
+        }
+        2 => transfer(node, mass, particle, shape)?,
+        3 => {
+            impose_essential(node, mass, &model.fixed);
+            if order == StressUpdate::First {
+                update_material(particle, node, shape, model, dt)?;
+            }
+        }
+        4 => balance_forces(node, mass, particle, shape, model, t),
+        5 => advance_momentum(node, dt),
+        6 => move_with_nodes(particle, node, shape, dt), // (20) (21)
+        _ => {
+            if order == StressUpdate::ModifiedLast {
+                map_momentum_anew(node, particle, shape);
+                impose_essential(node, mass, &model.fixed);
+            }
+            if order != StressUpdate::First {
+                update_material(particle, node, shape, model, dt)?;
+            }
+        }
+    }
+    Ok(())
+}
+// ANCHOR_END: forward_euler
+
+// ANCHOR: corrected_euler
+/// Step `n` of the corrected form, 1 to 7, in the time step from k to k+1; loads are those
+/// of k, at `t` (s).
+pub fn corrected_step<const D: usize>(
+    n: usize,
+    State { particle, node, shape, mass, scratch, .. }: &mut State<D>,
+    model: &Model<D>,
+    dt: f64,
+    t: f64,
+) -> Result<(), Breakdown> {
+    match n {
+        1 => {
+            discard(node);
+            tabulate(shape, scratch, particle, model)?; // N_Ip of k
+        }
+        2 => transfer(node, mass, particle, shape)?,
+        3 => impose_essential(node, mass, &model.fixed),
+        4 => balance_forces(node, mass, particle, shape, model, t),
+        5 => advance_momentum(node, dt),
+        6 => move_with_shares(particle, node, shape, dt), // (22) (23)
+        _ => {
+            map_momentum_anew(node, particle, shape);
+            impose_essential(node, mass, &model.fixed);
+            update_material(particle, node, shape, model, dt)?;
+        }
+    }
+    Ok(())
+}
+// ANCHOR_END: corrected_euler

@@ -1,0 +1,109 @@
+//! Time integration (§4): the nine steps, and the schemes that order them.
+
+pub mod euler;
+pub mod generalized_alpha;
+pub mod newmark;
+pub mod otm;
+pub mod steps;
+
+use super::breakdown::Breakdown;
+use super::choice::{Integrator, Method};
+use super::model::{Model, State};
+
+// ANCHOR: advance
+/// What a scheme needs at k = 0: with Newmark nodal values, by one time step with
+/// Δt = 0, in which nothing moves; with generalized-α the acceleration of loads
+/// that act at once; with the others nothing.
+///
+/// `after` sees the state after each step of Newmark's, and after OTM's start as step 0.
+pub fn start<const D: usize>(
+    state: &mut State<D>,
+    model: &Model<D>,
+    after: &mut impl FnMut(usize, &State<D>),
+) -> Result<(), Breakdown> {
+    match model.method {
+        Method::Otm => {
+            otm::start(state, model)?;
+            after(0, state);
+        }
+        Method::Mpm(Integrator::Newmark(_)) => all_steps(state, model, 0.0, 0.0, after)?,
+        Method::Mpm(Integrator::GeneralizedAlpha { .. }) if model.loads.is_some() => {
+            generalized_alpha::start(state, model)?;
+        }
+        Method::Mpm(_) => {}
+    }
+    steps::finite(&state.particle)
+}
+
+/// One time step, which ends at `t` (s); `after` sees the state after each step of the
+/// scheme, with its number.
+pub fn advance<const D: usize>(
+    state: &mut State<D>,
+    model: &Model<D>,
+    t: f64,
+    after: &mut impl FnMut(usize, &State<D>),
+) -> Result<(), Breakdown> {
+    state.steps += 1;
+    all_steps(state, model, model.dt, t, after)?;
+    steps::finite(&state.particle)
+}
+
+fn all_steps<const D: usize>(
+    state: &mut State<D>,
+    model: &Model<D>,
+    dt: f64,
+    t: f64,
+    after: &mut impl FnMut(usize, &State<D>),
+) -> Result<(), Breakdown> {
+    for n in 1..=step_count(model.method) {
+        one_step(n, state, model, dt, t)?;
+        after(n, state);
+    }
+    Ok(())
+}
+
+/// Step `n` of the model's scheme.
+fn one_step<const D: usize>(
+    n: usize,
+    state: &mut State<D>,
+    model: &Model<D>,
+    dt: f64,
+    t: f64,
+) -> Result<(), Breakdown> {
+    let loads_at = time_of_loads(model.method, dt, t);
+    match model.method {
+        Method::Otm => otm::step(n, state, model, dt, loads_at),
+        Method::Mpm(integrator) => match integrator {
+            Integrator::Newmark(reading) => newmark::step(n, state, model, reading, dt, loads_at),
+            Integrator::ForwardEuler(order) => {
+                euler::forward_step(n, state, model, order, dt, loads_at)
+            }
+            Integrator::CorrectedEuler => euler::corrected_step(n, state, model, dt, loads_at),
+            Integrator::GeneralizedAlpha { rho_b } => {
+                generalized_alpha::step(n, state, model, rho_b, dt, loads_at)
+            }
+        },
+    }
+}
+// ANCHOR_END: advance
+
+/// How many steps a time step has.
+fn step_count(method: Method) -> usize {
+    match method {
+        Method::Otm => otm::STEPS,
+        Method::Mpm(integrator) => match integrator {
+            Integrator::Newmark(_) => newmark::STEPS,
+            Integrator::ForwardEuler(_) | Integrator::CorrectedEuler => euler::STEPS,
+            Integrator::GeneralizedAlpha { .. } => generalized_alpha::STEPS,
+        },
+    }
+}
+
+/// When the loads of a time step are taken (s), which ends at `t`: Newmark and OTM balance
+/// the forces of k+1, the others those of k.
+pub fn time_of_loads(method: Method, dt: f64, t: f64) -> f64 {
+    match method {
+        Method::Otm | Method::Mpm(Integrator::Newmark(_)) => t,
+        Method::Mpm(_) => t - dt,
+    }
+}

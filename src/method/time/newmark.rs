@@ -1,0 +1,44 @@
+//! The paper's Algorithm: Newmark's explicit predictor-corrector with γ = ½,
+//! β = 0, the central difference (27)-(29).
+
+use super::steps::*;
+use crate::method::breakdown::Breakdown;
+use crate::method::model::{Model, State};
+use crate::method::reading::StepEight;
+
+/// The number of steps of the Algorithm.
+pub const STEPS: usize = 9;
+
+// ANCHOR: newmark
+/// Step `n` of the Algorithm, 1 to 9, in the time step from k to k+1 that ends at `t` (s).
+///
+/// With Δt = 0 and blank nodes the nine steps move nothing and give the nodal values of
+/// k = 0, which the first predictor needs.
+pub fn step<const D: usize>(
+    n: usize,
+    State { particle, node, shape, mass, scratch, .. }: &mut State<D>,
+    model: &Model<D>,
+    reading: StepEight,
+    dt: f64,
+    t: f64,
+) -> Result<(), Breakdown> {
+    match n {
+        1 => predict(particle, node, shape, dt), // (27) (28)
+        2 => {
+            discard(node);
+            tabulate(shape, scratch, particle, model)?;
+        }
+        3 => transfer(node, mass, particle, shape)?, // (13)
+        4 => impose_essential(node, mass, &model.fixed),
+        5 => increment_strain(particle, node, shape, dt), // (16)
+        6 => {
+            update_density(particle)?; // (17)
+            update_stress(particle, &model.law); // (3)
+        }
+        7 => balance_forces(node, mass, particle, shape, model, t), // (14) (15) (18)
+        8 => integrate_momentum(node, dt, reading),
+        _ => correct(particle, node, shape, dt), // (29)
+    }
+    Ok(())
+}
+// ANCHOR_END: newmark

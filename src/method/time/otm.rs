@@ -1,0 +1,145 @@
+//! The optimal transportation meshfree method (§6.2; Li, Habbal and Ortiz 2010).
+//!
+//! The nodes are the body's own: they carry mass and velocity, and they move. The
+//! particles are points of quadrature, with volume, deformation and stress. In
+//! between stand local max-ent functions on the moving nodes, tabulated anew in
+//! every step. Time goes by central differences, as in [`crate::method::time::newmark`].
+
+use super::steps::balance_forces;
+use crate::method::basis::scattered;
+use crate::method::breakdown::Breakdown;
+use crate::method::continuum::law;
+use crate::method::continuum::shape::Shape;
+use crate::method::continuum::state::{Nodes, Particles};
+use crate::method::continuum::sums;
+use crate::method::model::{Model, State};
+use nalgebra::SVector;
+
+/// The number of steps of OTM.
+pub const STEPS: usize = 7;
+
+// ANCHOR: otm_start
+/// k = 0: m_a = Σ_p m_p N_ap, once and for all, and v_a = Σ_p m_p v_p N_ap / m_a.
+///
+/// Since the nodal mass stays, so does the momentum, to round-off.
+pub fn start<const D: usize>(state: &mut State<D>, model: &Model<D>) -> Result<(), Breakdown> {
+    tabulate_again(state, model)?;
+    let State { particle, node, shape, mass, .. } = state;
+    sums::lumped_mass(node, particle, shape);
+    sums::momentum(node, particle, shape);
+    for &(a, i) in &model.fixed {
+        node.p[a][i] = 0.0;
+    }
+    for a in 0..node.len() {
+        node.v[a] = node.p[a] / node.m[a];
+    }
+    balance_forces(node, mass, particle, shape, model, 0.0);
+    show_velocity(particle, node, shape);
+    Ok(())
+}
+// ANCHOR_END: otm_start
+
+// ANCHOR: otm
+/// Step `n` of OTM, 1 to 7, in the time step from k to k+1 that ends at `t` (s).
+pub fn step<const D: usize>(
+    n: usize,
+    state: &mut State<D>,
+    model: &Model<D>,
+    dt: f64,
+    t: f64,
+) -> Result<(), Breakdown> {
+    let State { particle, node, shape, mass, .. } = state;
+    match n {
+        1 => kick(node, 0.5 * dt),
+        2 => move_nodes(node, dt),
+        3 => move_particles(particle, node, shape, dt), // N_ap of k
+        4 => deform(particle, node, shape, model, dt)?, // N_ap of k
+        5 => tabulate_again(state, model)?,             // N_ap at k+1
+        6 => {
+            node.f.fill(SVector::zeros());
+            balance_forces(node, mass, particle, shape, model, t);
+        }
+        _ => {
+            kick(node, 0.5 * dt);
+            show_velocity(particle, node, shape);
+        }
+    }
+    Ok(())
+}
+// ANCHOR_END: otm
+
+// ANCHOR: otm_steps
+/// Steps 1 and 7: v_a += ½ Δt f_a / m_a.
+pub fn kick<const D: usize>(node: &mut Nodes<D>, dt: f64) {
+    for a in 0..node.len() {
+        node.v[a] += node.f[a] * (dt / node.m[a]);
+    }
+}
+
+/// Step 2: x_a += Δt v_a.
+pub fn move_nodes<const D: usize>(node: &mut Nodes<D>, dt: f64) {
+    for a in 0..node.len() {
+        node.x[a] += node.v[a] * dt;
+    }
+}
+
+/// Step 3: x_p += Δt Σ_a v_a N_ap.
+pub fn move_particles<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        particle.x[p] += sums::interpolate(&node.v, shape, p) * dt;
+    }
+}
+
+/// Step 4: with G = Σ_a Δt v_a ⊗ ∇N_ap and f = 1 + G: F ← f F, ρ ← ρ / det f, and
+/// σ += D : Δε with Δε = sym(G (1 + G/2)⁻¹).
+///
+/// Errors: [`Breakdown::Inverted`] when det f ≤ 0; [`Breakdown::NotFinite`].
+pub fn deform<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    model: &Model<D>,
+    dt: f64,
+) -> Result<(), Breakdown> {
+    for p in 0..particle.len() {
+        let G = sums::velocity_gradient(node, shape, p) * dt;
+        let (f, J) = law::increment(&G);
+        if !J.is_finite() {
+            return Err(Breakdown::NotFinite { particle: p, symbol: "strain" });
+        }
+        let d_eps = law::midpoint_strain(&G).filter(|_| J > 0.0);
+        let inverted = Breakdown::Inverted { particle: p, strain: J - 1.0 };
+        particle.d_eps[p] = d_eps.ok_or(inverted)?;
+        particle.F[p] = f * particle.F[p];
+        particle.rho[p] /= J;
+        particle.sigma[p] += model.law.stress_increment(&particle.d_eps[p]);
+    }
+    Ok(())
+}
+
+/// v_p = Σ_a v_a N_ap, for what is recorded; nothing is computed from it.
+pub fn show_velocity<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+) {
+    for p in 0..particle.len() {
+        particle.v[p] = sums::interpolate(&node.v, shape, p);
+    }
+}
+// ANCHOR_END: otm_steps
+
+/// Step 5: N_ap and ∇N_ap on the nodes where they stand now.
+pub fn tabulate_again<const D: usize>(
+    State { particle, node, shape, scratch, .. }: &mut State<D>,
+    model: &Model<D>,
+) -> Result<(), Breakdown> {
+    let Particles { x, lambda, .. } = particle;
+    let nodes = scattered::Places { x: &node.x, h: &model.grid.h };
+    scattered::fill_from_nodes(shape, scratch, lambda, &model.basis, nodes, x)
+}

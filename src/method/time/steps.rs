@@ -1,0 +1,308 @@
+//! The steps of the paper's Algorithm, one function each: outputs first,
+//! inputs after, so that a signature reads like its equation.
+
+use crate::method::basis::{self, Scratch};
+use crate::method::breakdown::Breakdown;
+use crate::method::continuum::law::{self, LinearElastic};
+use crate::method::continuum::mass::MassMatrix;
+use crate::method::continuum::shape::Shape;
+use crate::method::continuum::state::{Nodes, Particles};
+use crate::method::continuum::sums;
+use crate::method::model::{Fixed, Model};
+use crate::method::reading::StepEight;
+use nalgebra::SVector;
+
+/// γ of Newmark's method: with β = 0 the explicit central difference.
+pub const NEWMARK_GAMMA: f64 = 0.5;
+
+// ANCHOR: predict
+/// Step 1, predictor: (27) x_p += Δt Σ_I p_I N_Ip / m_I + ½ Δt² Σ_I f_I N_Ip / m_I
+/// and (28) v_p += (1 − γ) Δt Σ_I f_I N_Ip / m_I, with nodal values of k.
+pub fn predict<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        let v_p = sums::to_particle(&node.mv, node, shape, p);
+        let a_p = sums::to_particle(&node.ma, node, shape, p);
+        particle.x[p] += v_p * dt + a_p * (0.5 * dt * dt);
+        particle.v[p] += a_p * ((1.0 - NEWMARK_GAMMA) * dt);
+    }
+}
+// ANCHOR_END: predict
+
+// ANCHOR: discard
+/// Step 2: discard the previous nodal values.
+pub fn discard<const D: usize>(node: &mut Nodes<D>) {
+    node.m.fill(0.0);
+    node.p.fill(SVector::zeros());
+    node.v.fill(SVector::zeros());
+    node.f.fill(SVector::zeros());
+    node.mv.fill(SVector::zeros());
+    node.ma.fill(SVector::zeros());
+    node.a.fill(SVector::zeros());
+    node.a_next.fill(SVector::zeros());
+}
+// ANCHOR_END: discard
+
+// ANCHOR: tabulate_step
+/// Between steps 2 and 3: N_Ip and ∇N_Ip at the particles' new positions.
+///
+/// Errors: [`Breakdown::LeftGrid`]; [`Breakdown::NotFinite`] for a position that
+/// is not a number; [`Breakdown::NoBasis`] where local max-ent has no solution.
+pub fn tabulate<const D: usize>(
+    shape: &mut Shape<D>,
+    scratch: &mut Scratch<D>,
+    particle: &mut Particles<D>,
+    model: &Model<D>,
+) -> Result<(), Breakdown> {
+    let Particles { x, lambda, .. } = particle;
+    basis::fill_from_grid(shape, scratch, lambda, &model.basis, &model.grid, x)
+}
+// ANCHOR_END: tabulate_step
+
+// ANCHOR: transfer
+/// Step 3: m_I = Σ_p m_p N_Ip  (kg) and p_I = Σ_p m_p v_p N_Ip  (kg m/s); with
+/// the consistent mass matrix m_IJ, too.
+///
+/// Errors: [`Breakdown::SingularMass`].
+pub fn transfer<const D: usize>(
+    node: &mut Nodes<D>,
+    mass: &mut MassMatrix<D>,
+    particle: &Particles<D>,
+    shape: &Shape<D>,
+) -> Result<(), Breakdown> {
+    sums::lumped_mass(node, particle, shape);
+    sums::momentum(node, particle, shape);
+    mass.assemble(particle, shape, &node.m)
+}
+// ANCHOR_END: transfer
+
+// ANCHOR: impose_essential
+/// Step 4: p_I = 0 where the boundary is fixed, then v_I = p_I / m_I  (m/s), or the
+/// solution of (12) with the consistent mass matrix.
+pub fn impose_essential<const D: usize>(
+    node: &mut Nodes<D>,
+    mass: &mut MassMatrix<D>,
+    fixed: &Fixed,
+) {
+    for &(I, i) in fixed {
+        node.p[I][i] = 0.0;
+    }
+    mass.solve(&mut node.mv, &node.p, &node.m);
+    update_velocity(node);
+}
+
+/// v_I from m_I v_I  (m/s); a node without mass keeps the velocity 0.
+pub fn update_velocity<const D: usize>(node: &mut Nodes<D>) {
+    for I in 0..node.len() {
+        if node.m[I] > 0.0 {
+            node.v[I] = node.mv[I] / node.m[I];
+        }
+    }
+}
+// ANCHOR_END: impose_essential
+
+// ANCHOR: increment_strain
+/// Step 5: Δε_p = Δt ε̇_p, with (16) ε̇_p = ½ Σ_I (∇N_Ip v_I + (∇N_Ip v_I)ᵀ)  (–).
+pub fn increment_strain<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        let grad_v = sums::velocity_gradient(node, shape, p);
+        particle.d_eps[p] = law::symmetric_part(&grad_v) * dt;
+    }
+}
+// ANCHOR_END: increment_strain
+
+// ANCHOR: update_density
+/// Step 6: ρ_p ← ρ_p / (1 + tr Δε_p)  (kg/m³).
+///
+/// Errors: [`Breakdown::Inverted`] when 1 + tr Δε_p ≤ 0;
+/// [`Breakdown::NotFinite`] when it is not a number.
+pub fn update_density<const D: usize>(particle: &mut Particles<D>) -> Result<(), Breakdown> {
+    for p in 0..particle.len() {
+        let strain = particle.d_eps[p].trace();
+        if !strain.is_finite() {
+            return Err(Breakdown::NotFinite { particle: p, symbol: "strain" });
+        }
+        let rho_p = law::density(particle.rho[p], &particle.d_eps[p]);
+        particle.rho[p] = rho_p.ok_or(Breakdown::Inverted { particle: p, strain })?;
+    }
+    Ok(())
+}
+// ANCHOR_END: update_density
+
+// ANCHOR: update_stress
+/// (3), between steps 6 and 7: σ_p += D : Δε_p  (Pa).
+pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &LinearElastic) {
+    for p in 0..particle.len() {
+        particle.sigma[p] += law.stress_increment(&particle.d_eps[p]);
+    }
+}
+// ANCHOR_END: update_stress
+
+// ANCHOR: balance_forces
+/// Step 7: f_I = f_I^int + f_I^ext, (14) (15), with the loads of time `t` (s),
+/// and f_I = 0 where the boundary is fixed  (N); then m_I a_I, which is f_I, or the
+/// solution of (12) with the consistent mass matrix.
+pub fn balance_forces<const D: usize>(
+    node: &mut Nodes<D>,
+    mass: &mut MassMatrix<D>,
+    particle: &Particles<D>,
+    shape: &Shape<D>,
+    model: &Model<D>,
+    t: f64,
+) {
+    sums::internal_force(node, particle, shape);
+    if let Some(loads) = &model.loads {
+        sums::external_force(node, particle, shape, loads, t);
+    }
+    for &(I, i) in &model.fixed {
+        node.f[I][i] = 0.0;
+    }
+    mass.solve(&mut node.ma, &node.f, &node.m);
+}
+// ANCHOR_END: balance_forces
+
+// ANCHOR: integrate_momentum
+/// Step 8: p_I += γ f_I Δt, or f_I Δt as printed  (kg m/s); m_I v_I likewise.
+pub fn integrate_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64, reading: StepEight) {
+    let share = match reading {
+        StepEight::SecondOrder => NEWMARK_GAMMA,
+        StepEight::AsPrinted => 1.0,
+    };
+    for I in 0..node.len() {
+        node.p[I] += node.f[I] * (share * dt);
+        node.mv[I] += node.ma[I] * (share * dt);
+    }
+}
+// ANCHOR_END: integrate_momentum
+
+// ANCHOR: correct
+/// Step 9, corrector (29): v_p += γ Δt Σ_I f_I N_Ip / m_I, all at k+1  (m/s).
+pub fn correct<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        let a_p = sums::to_particle(&node.ma, node, shape, p);
+        particle.v[p] += a_p * (NEWMARK_GAMMA * dt);
+    }
+}
+// ANCHOR_END: correct
+
+// ANCHOR: euler_steps
+/// Strain, density and stress of all particles from the nodal velocity: (16),
+/// (17), (3).
+///
+/// Errors: [`Breakdown::Inverted`], [`Breakdown::NotFinite`].
+pub fn update_material<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    model: &Model<D>,
+    dt: f64,
+) -> Result<(), Breakdown> {
+    increment_strain(particle, node, shape, dt);
+    update_density(particle)?;
+    update_stress(particle, &model.law);
+    Ok(())
+}
+
+/// (18) over one step: p_I += f_I Δt  (kg m/s), m_I v_I likewise, and v_I  (m/s).
+pub fn advance_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64) {
+    for I in 0..node.len() {
+        node.p[I] += node.f[I] * dt;
+        node.mv[I] += node.ma[I] * dt;
+    }
+    update_velocity(node);
+}
+
+/// (20) v_p += Δt Σ_I N_Ip a_I and (21) x_p += Δt Σ_I N_Ip v_I, with
+/// a_I = f_I/m_I and v_I = p_I/m_I of the advanced momentum.
+pub fn move_with_nodes<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        particle.v[p] += sums::to_particle_divided(&node.ma, node, shape, p) * dt;
+        particle.x[p] += sums::to_particle_divided(&node.mv, node, shape, p) * dt;
+    }
+}
+
+/// (23) v_p += Δt Σ_I N_Ip f_I / m_I and (22) x_p += Δt Σ_I N_Ip p_I / m_I.
+pub fn move_with_shares<const D: usize>(
+    particle: &mut Particles<D>,
+    node: &Nodes<D>,
+    shape: &Shape<D>,
+    dt: f64,
+) {
+    for p in 0..particle.len() {
+        particle.v[p] += sums::to_particle(&node.ma, node, shape, p) * dt;
+        particle.x[p] += sums::to_particle(&node.mv, node, shape, p) * dt;
+    }
+}
+
+/// p_I = Σ_p m_p v_p N_Ip with the particles' new velocity and the old N_Ip.
+pub fn map_momentum_anew<const D: usize>(
+    node: &mut Nodes<D>,
+    particle: &Particles<D>,
+    shape: &Shape<D>,
+) {
+    node.p.fill(SVector::zeros());
+    sums::momentum(node, particle, shape);
+}
+// ANCHOR_END: euler_steps
+
+/// a_I = Σ_p m_p a_p N_Ip / m_I (m/s²), or the solution of (12) with the consistent mass
+/// matrix; 0 where the boundary is fixed.
+pub fn map_acceleration<const D: usize>(
+    node: &mut Nodes<D>,
+    mass: &mut MassMatrix<D>,
+    particle: &Particles<D>,
+    shape: &Shape<D>,
+    fixed: &Fixed,
+) {
+    for (I, p, N_Ip, _) in shape.pairs() {
+        node.a[I] += particle.a[p] * (particle.m[p] * N_Ip);
+    }
+    for &(I, i) in fixed {
+        node.a[I][i] = 0.0;
+    }
+    mass.solve(&mut node.ma, &node.a, &node.m);
+    for I in 0..node.len() {
+        node.a[I] = if node.m[I] > 0.0 { node.ma[I] / node.m[I] } else { node.ma[I] };
+    }
+}
+
+/// Stops a run in the step in which a particle stops being finite; a density must
+/// also stay above 0.
+///
+/// Errors: [`Breakdown::NotFinite`] with the first such particle.
+pub fn finite<const D: usize>(particle: &Particles<D>) -> Result<(), Breakdown> {
+    for p in 0..particle.len() {
+        let symbol = if !particle.x[p].iter().all(|x| x.is_finite()) {
+            "position"
+        } else if !particle.v[p].iter().all(|v| v.is_finite()) {
+            "velocity"
+        } else if !particle.sigma[p].iter().all(|s| s.is_finite()) {
+            "stress"
+        } else if !(particle.rho[p].is_finite() && particle.rho[p] > 0.0) {
+            "density"
+        } else {
+            continue;
+        };
+        return Err(Breakdown::NotFinite { particle: p, symbol });
+    }
+    Ok(())
+}

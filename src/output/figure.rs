@@ -1,0 +1,426 @@
+//! Pictures as SVG: histories of probes, fronts of the exact solution, errors.
+
+use crate::method::basis::lme::Failure;
+use crate::method::basis::support;
+use crate::method::exact::riemann::{Bar, Family};
+use crate::run::table::Table;
+use crate::scene::{Probe, Scene};
+use kuva::prelude::*;
+use nalgebra::Vector2;
+use std::sync::Arc;
+
+/// Width and height of a picture (px).
+const SIZE: (f64, f64) = (860.0, 420.0);
+
+/// Colour-blind safe (Okabe & Ito 2008); the exact curve stands behind.
+const EXACT: &str = "#999999";
+const COLOURS: [&str; 10] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#882255",
+    "#999933", "#44aa99",
+];
+
+/// A curve's points.
+pub type Points = Vec<(f64, f64)>;
+
+/// One line of a picture.
+struct Curve {
+    points: Points,
+    colour: &'static str,
+    width: f64,
+    /// Empty: not in the legend.
+    legend: String,
+}
+
+/// What stands around the curves.
+struct Frame {
+    title: String,
+    x_label: String,
+    y_label: String,
+    log: bool,
+}
+
+fn draw(curves: Vec<Curve>, frame: Frame) -> String {
+    let xs = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.0);
+    let (first, last) = (xs().fold(0.0, f64::min), xs().fold(0.0, f64::max));
+    let plots: Vec<Plot> = curves
+        .into_iter()
+        .map(|curve| {
+            let line = LinePlot::new()
+                .with_data(curve.points)
+                .with_color(curve.colour)
+                .with_stroke_width(curve.width);
+            Plot::from(if curve.legend.is_empty() { line } else { line.with_legend(curve.legend) })
+        })
+        .collect();
+    let layout = Layout::auto_from_plots(&plots)
+        .with_width(SIZE.0)
+        .with_height(SIZE.1)
+        .with_title(frame.title)
+        .with_x_label(frame.x_label)
+        .with_y_label(frame.y_label)
+        .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_title_size(16)
+        .with_label_size(14)
+        .with_tick_size(12)
+        .with_legend_position(LegendPosition::OutsideRightTop);
+    let layout = if frame.log {
+        layout.with_log_scale()
+    } else {
+        layout.with_x_axis_min(first).with_x_axis_max(last)
+    };
+    own_ids(&render_to_svg(plots, layout))
+}
+
+/// The history of one probe, computed and, where known, exact.
+pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
+    let column = |name: &str| history.column(name).unwrap_or_default();
+    let (t, computed) = (column("t"), column(&probe.name));
+    let exact = column(&format!("{}_exact", probe.name));
+    let (per_t, t_prefix) = prefix(largest(&t));
+    let (per_y, y_prefix) = prefix(largest(&computed).max(largest(&exact)));
+    let curve = |y: &[f64], colour, width, legend: &str| Curve {
+        points: t.iter().zip(y).map(|(t, y)| (t * per_t, y * per_y)).collect(),
+        colour,
+        width,
+        legend: legend.to_string(),
+    };
+    let mut curves = Vec::new();
+    if !exact.is_empty() {
+        curves.push(curve(&exact, EXACT, 4.0, "exact"));
+    }
+    curves.push(curve(&computed, COLOURS[0], 1.4, "computed"));
+
+    let (name, unit) = probe.quantity.name_unit();
+    let at: Vec<String> =
+        probe.position.iter().zip(&scene.body.origin).map(|(x, o)| format!("{}", x + o)).collect();
+    let cells: Vec<String> = scene.grid.cells.iter().map(usize::to_string).collect();
+    let frame = Frame {
+        title: format!("{}: {}, {} cells", scene.title, probe.name, cells.join(" × ")),
+        x_label: format!("time t [{t_prefix}s]"),
+        y_label: format!("{name} nearest to {} m [{y_prefix}{unit}]", at.join(", ")),
+        log: false,
+    };
+    draw(curves, frame)
+}
+
+/// A quantity of the exact bar at the material point x over `transits` L/c:
+/// the paper's Figs. 5 and 6. `value` gives the quantity at (x, t).
+pub fn exact_history(
+    title: &str,
+    y_label: &str,
+    transits: f64,
+    value: impl Fn(f64) -> f64,
+) -> String {
+    // Jumps fall on multiples of L/4c; each plateau is drawn from its middle.
+    let pieces = (transits * 4.0) as usize;
+    let mut points = Vec::new();
+    for k in 0..pieces {
+        let y = value((k as f64 + 0.5) / 4.0);
+        points.push((k as f64 / 4.0, y));
+        points.push(((k + 1) as f64 / 4.0, y));
+    }
+    let frame = Frame {
+        title: title.to_string(),
+        x_label: "time ct/L [–]".to_string(),
+        y_label: y_label.to_string(),
+        log: false,
+    };
+    draw(vec![Curve { points, colour: COLOURS[0], width: 2.0, legend: String::new() }], frame)
+}
+
+/// The x-t diagram of a bar: every front from its source, from end to end, for
+/// `transits` L/c, coloured by the invariant that carries it.
+pub fn fronts(bar: &Bar, transits: f64) -> String {
+    let mut curves: Vec<Curve> = Vec::new();
+    for source in bar.fronts(0.0) {
+        for family in [Family::I, Family::II] {
+            let (mut x, mut t, mut family) = (source / bar.length, 0.0, family);
+            while t < transits {
+                let (end, other, colour) = match family {
+                    Family::I => (1.0, Family::II, COLOURS[0]),
+                    Family::II => (0.0, Family::I, COLOURS[1]),
+                };
+                let step = f64::min((end - x).abs(), transits - t);
+                let to = x + step * (end - x).signum();
+                let first = !curves.iter().any(|curve| curve.colour == colour);
+                let legend = match family {
+                    _ if !first => String::new(),
+                    Family::I => "jump of R^I, to the right".to_string(),
+                    Family::II => "jump of R^II, to the left".to_string(),
+                };
+                let points = vec![(x, t), (to, t + step)];
+                curves.push(Curve { points, colour, width: 2.0, legend });
+                (x, t, family) = (to, t + step, other);
+            }
+        }
+    }
+    let frame = Frame {
+        title: "Fronts of the bar".to_string(),
+        x_label: "place x/L [–]".to_string(),
+        y_label: "time ct/L [–]".to_string(),
+        log: false,
+    };
+    draw(curves, frame)
+}
+
+/// Errors against the number of cells, both on logarithmic axes; each list of
+/// `(cells, error)` has its name.
+pub fn convergence(title: &str, lists: &[(&str, Points)]) -> String {
+    let owned: Vec<(String, Points)> =
+        lists.iter().map(|(name, points)| (name.to_string(), points.clone())).collect();
+    log_curves(title, "cells [–]", "relative error [–]", &owned)
+}
+
+/// Curves with names, both axes logarithmic.
+pub fn log_curves(title: &str, x_label: &str, y_label: &str, lists: &[(String, Points)]) -> String {
+    named_curves(title, x_label, y_label, lists, true)
+}
+
+/// Curves with names on plain axes.
+pub fn curves(title: &str, x_label: &str, y_label: &str, lists: &[(String, Points)]) -> String {
+    named_curves(title, x_label, y_label, lists, false)
+}
+
+fn named_curves(
+    title: &str,
+    x_label: &str,
+    y_label: &str,
+    lists: &[(String, Points)],
+    log: bool,
+) -> String {
+    let curve = |(n, (name, points)): (usize, &(String, Points))| Curve {
+        points: points.clone(),
+        colour: COLOURS[n % COLOURS.len()],
+        width: 2.0,
+        legend: name.clone(),
+    };
+    let frame = Frame {
+        title: title.to_string(),
+        x_label: x_label.to_string(),
+        y_label: y_label.to_string(),
+        log,
+    };
+    draw(lists.iter().enumerate().map(curve).collect(), frame)
+}
+
+/// A point of a work-precision diagram: what it took, its relative error, and the
+/// group that gives its colour; no error for a run that failed.
+pub struct Work {
+    pub work: f64,
+    pub error: Option<f64>,
+    pub group: String,
+}
+
+/// Error against work, both logarithmic: one colour for each group, the Pareto front
+/// as a line, failed runs as crosses above all others.
+pub fn work_precision(title: &str, x_label: &str, works: &[Work], front: &Points) -> String {
+    let worst = works.iter().filter_map(|work| work.error).fold(0.0, f64::max);
+    let mut groups: Vec<&str> = Vec::new();
+    for work in works {
+        if !groups.contains(&work.group.as_str()) {
+            groups.push(&work.group);
+        }
+    }
+    let mut plots: Vec<Plot> = Vec::new();
+    if front.len() > 1 {
+        let line = LinePlot::new().with_data(front.clone()).with_color("#000000");
+        plots.push(Plot::from(line.with_stroke_width(1.5).with_legend("nobody is better")));
+    }
+    for (n, group) in groups.iter().enumerate() {
+        let own = works.iter().filter(|work| work.group == *group);
+        let points: Points =
+            own.filter_map(|work| work.error.map(|error| (work.work, error))).collect();
+        if !points.is_empty() {
+            let scatter = ScatterPlot::new().with_data(points).with_size(3.5);
+            let scatter = scatter.with_color(COLOURS[n % COLOURS.len()]);
+            plots.push(scatter.with_legend(*group).into());
+        }
+    }
+    let failed: Points =
+        works.iter().filter(|work| work.error.is_none()).map(|w| (w.work, 2.0 * worst)).collect();
+    if !failed.is_empty() && worst > 0.0 {
+        let scatter = ScatterPlot::new().with_data(failed).with_size(3.5).with_color("#d00000");
+        plots.push(scatter.with_marker(MarkerShape::Cross).with_legend("failed").into());
+    }
+    let layout = Layout::auto_from_plots(&plots)
+        .with_width(SIZE.0)
+        .with_height(SIZE.1)
+        .with_title(title)
+        .with_x_label(x_label)
+        .with_y_label("relative error [–]")
+        .with_log_scale()
+        .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_title_size(16)
+        .with_label_size(14)
+        .with_tick_size(12)
+        .with_legend_position(LegendPosition::OutsideRightTop);
+    own_ids(&render_to_svg(plots, layout))
+}
+
+/// The paper's Fig. 3: local max-ent in 2D for several γ. Above N of the middle
+/// node, below ∂N/∂x, over a square of nodes with the spacing 1.
+///
+/// Errors: [`Failure`], if a point cannot be served.
+pub fn local_max_ent(gammas: &[f64]) -> Result<String, Failure> {
+    const NODES: i32 = 3; // to each side of the middle
+    const PIXELS: usize = 25;
+    let mut nodes = Vec::new();
+    for j in -NODES..=NODES {
+        for i in -NODES..=NODES {
+            nodes.push(Vector2::new(f64::from(i), f64::from(j)));
+        }
+    }
+    let middle = nodes.len() / 2;
+    let (mut plots, mut layouts) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
+    for gamma in gammas {
+        let mut values = [Vec::new(), Vec::new()];
+        for row in 0..PIXELS {
+            let mut line = [Vec::new(), Vec::new()];
+            for column in 0..PIXELS {
+                let at = |n: usize| 2.5 * (2.0 * n as f64 / (PIXELS - 1) as f64 - 1.0);
+                let x = Vector2::new(at(column), -at(row));
+                let (found, _) = support::at(&nodes, 1.0, *gamma, 1e-6, &x)?;
+                let here = found.iter().find(|value| value.0 == middle);
+                line[0].push(here.map_or(0.0, |value| value.1));
+                line[1].push(here.map_or(0.0, |value| value.2[0]));
+            }
+            for (values, line) in values.iter_mut().zip(line) {
+                values.push(line);
+            }
+        }
+        for (n, (values, name)) in values.into_iter().zip(["N", "h ∂N/∂x"]).enumerate() {
+            let map = if n == 0 { ColorMap::Viridis } else { ColorMap::Inferno };
+            let heatmap = Heatmap::new()
+                .with_data(values)
+                .with_color_map(map)
+                .with_cell_size(1.0)
+                .with_x_range(-2.5, 2.5)
+                .with_y_range(-2.5, 2.5);
+            let plot = Plot::from(heatmap);
+            let layout = Layout::auto_from_plots(std::slice::from_ref(&plot))
+                .with_x_axis_min(-2.5)
+                .with_x_axis_max(2.5)
+                .with_y_axis_min(-2.5)
+                .with_y_axis_max(2.5)
+                .with_title(format!("{name}, γ = {gamma}"))
+                .with_title_size(14);
+            plots[n].push(vec![plot]);
+            layouts[n].push(layout);
+        }
+    }
+    let figure = kuva::render::figure::Figure::new(2, gammas.len())
+        .with_plots(plots.into_iter().flatten().collect())
+        .with_layouts(layouts.into_iter().flatten().collect())
+        .with_cell_size(300.0, 260.0);
+    Ok(own_ids(&kuva::backend::svg::SvgBackend.render_scene(&figure.render())))
+}
+
+/// The particles of a 2D scene, or of a 3D one seen along z, in six classes of
+/// speed.
+pub fn particles(scene: &Scene, table: &Table, t: f64) -> String {
+    const CLASSES: usize = 6;
+    let column = |name: &str| table.column(name).unwrap_or_default();
+    let (x, y) = (column("position_x"), column("position_y"));
+    let mut speed = vec![0.0; x.len()];
+    for axis in ["x", "y", "z"] {
+        for (square, v) in speed.iter_mut().zip(column(&format!("velocity_{axis}"))) {
+            *square += v * v;
+        }
+    }
+    let speed: Vec<f64> = speed.into_iter().map(libm::sqrt).collect();
+    let top = largest(&speed);
+    let (per_v, v_prefix) = prefix(top);
+    let class = |v: f64| {
+        if top > 0.0 { ((v / top * CLASSES as f64) as usize).min(CLASSES - 1) } else { 0 }
+    };
+    let bound = |n: usize| format!("{:.3}", n as f64 / CLASSES as f64 * top * per_v);
+    let plots: Vec<Plot> = (0..CLASSES)
+        .rev()
+        .map(|n| {
+            let own = (0..x.len()).filter(|p| class(speed[*p]) == n);
+            ScatterPlot::new()
+                .with_data(own.map(|p| (x[p], y[p])))
+                .with_size(2.2)
+                .with_color(ColorMap::Viridis.map((n as f64 + 0.5) / CLASSES as f64))
+                .with_legend(format!("{} to {} {v_prefix}m/s", bound(n), bound(n + 1)))
+                .into()
+        })
+        .collect();
+    // The body's box, and whatever has left it.
+    let range = |d: usize, list: &[f64]| {
+        let (low, high) = (scene.body.origin[d], scene.body.origin[d] + scene.body.length[d]);
+        (list.iter().fold(low, |a, b| a.min(*b)), list.iter().fold(high, |a, b| a.max(*b)))
+    };
+    let (x_range, y_range) = (range(0, &x), range(1, &y));
+    let layout = Layout::auto_from_plots(&plots)
+        .with_width(640.0)
+        .with_height(480.0)
+        .with_equal_aspect()
+        .with_x_axis_min(x_range.0)
+        .with_x_axis_max(x_range.1)
+        .with_y_axis_min(y_range.0)
+        .with_y_axis_max(y_range.1)
+        .with_title(format!("{}: speed of the particles at t = {} s", scene.title, tick(t)))
+        .with_x_label("x [m]")
+        .with_y_label("y [m]")
+        .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_title_size(15)
+        .with_legend_position(LegendPosition::OutsideRightTop);
+    own_ids(&render_to_svg(plots, layout))
+}
+
+/// Numbers the clip paths of a picture from 1. The library numbers them through
+/// all pictures of a process, so that the same picture would differ.
+fn own_ids(svg: &str) -> String {
+    const ID: &str = "kuva-clip-";
+    let mut known: Vec<&str> = Vec::new();
+    let mut pieces = svg.split(ID);
+    let mut out = pieces.next().unwrap_or("").to_string();
+    for piece in pieces {
+        let end = piece.find(|c: char| !c.is_ascii_digit()).unwrap_or(piece.len());
+        let (number, rest) = piece.split_at(end);
+        let at = known.iter().position(|old| *old == number).unwrap_or_else(|| {
+            known.push(number);
+            known.len() - 1
+        });
+        out.push_str(&format!("clip-{}{rest}", at + 1));
+    }
+    out
+}
+
+fn largest(list: &[f64]) -> f64 {
+    list.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))
+}
+
+/// The SI prefix that brings `largest` between 1 and 1000, and its factor.
+fn prefix(largest: f64) -> (f64, &'static str) {
+    const PREFIXES: [(f64, &str); 10] = [
+        (1e-12, "T"),
+        (1e-9, "G"),
+        (1e-6, "M"),
+        (1e-3, "k"),
+        (1.0, ""),
+        (1e3, "m"),
+        (1e6, "µ"),
+        (1e9, "n"),
+        (1e12, "p"),
+        (1e15, "f"),
+    ];
+    let fits = |(factor, _): &&(f64, &str)| largest * factor >= 1.0;
+    PREFIXES.iter().find(fits).copied().unwrap_or((1.0, ""))
+}
+
+/// A tick label: up to six decimals, no trailing zeros; a power of ten where
+/// that would show nothing.
+fn tick(x: f64) -> String {
+    let size = libm::fabs(x);
+    if x != 0.0 && !(1e-4..1e7).contains(&size) {
+        return format!("{x:.1e}").replace(".0e", "e");
+    }
+    let rounded = format!("{x:.6}");
+    let short = rounded.trim_end_matches('0').trim_end_matches('.');
+    if short == "-0" { "0".to_string() } else { short.to_string() }
+}

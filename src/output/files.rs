@@ -1,0 +1,75 @@
+//! Files, each complete or not there.
+
+use crate::run;
+use crate::scene::Scene;
+use crate::scene::fault::Fault;
+use std::fs;
+use std::path::Path;
+
+/// The text of a file.
+///
+/// Errors: [`Fault::Read`] with the path.
+pub fn text(path: &Path) -> Result<String, Fault> {
+    fs::read_to_string(path).map_err(|source| Fault::Read { path: path.to_path_buf(), source })
+}
+
+/// Reads a scene file with the `KEY=VALUE` of `sets` in place of its own.
+///
+/// Errors: [`Fault::Read`]; [`Fault::Scene`] with file, line, key and what is allowed.
+pub fn scene(path: &Path, sets: &[String]) -> Result<Scene, Fault> {
+    let stem = path.file_stem().map_or("".into(), |stem| stem.to_string_lossy());
+    // A name that is no name for a directory of results.
+    let name = if stem.trim_matches('.').is_empty() { "scene".into() } else { stem };
+    Ok(run::parse(&name, &path.display().to_string(), &text(path)?, sets)?)
+}
+
+/// Writes all `files` into `dir`, each complete or not at all, and removes the
+/// `stale` ones of an earlier run, so that a directory does not mix two runs.
+///
+/// Errors: [`Fault::Write`] with the path.
+pub fn write_all(dir: &Path, files: &[(String, Vec<u8>)], stale: &[String]) -> Result<(), Fault> {
+    let fault = |path: &Path, source| Fault::Write { path: path.to_path_buf(), source };
+    for (name, _) in files {
+        // What is not a file of its own (a device, a pipe, a link) would be replaced by one.
+        let path = dir.join(name);
+        if fs::symlink_metadata(&path).is_ok_and(|there| !there.is_file()) {
+            return Err(fault(&path, std::io::Error::other("it is not a regular file")));
+        }
+    }
+    let temporary = |name: &str| dir.join(format!(".{name}.{}.part", std::process::id()));
+    let write = || -> Result<(), Fault> {
+        for (name, bytes) in files {
+            let path = temporary(name);
+            fs::write(&path, bytes).map_err(|source| fault(&path, source))?;
+        }
+        for (name, _) in files {
+            let path = dir.join(name);
+            fs::rename(temporary(name), &path).map_err(|source| fault(&path, source))?;
+        }
+        Ok(())
+    };
+    write().inspect_err(|_| {
+        for (name, _) in files {
+            // Best effort: the error that matters is the one that led here.
+            fs::remove_file(temporary(name)).ok();
+        }
+    })?;
+    for name in stale.iter().filter(|name| !files.iter().any(|(written, _)| written == *name)) {
+        let path = dir.join(name);
+        if path.exists() {
+            fs::remove_file(&path).map_err(|source| fault(&path, source))?;
+        }
+    }
+    Ok(())
+}
+
+/// Makes `dir` and tries to write there, before a run spends time.
+///
+/// Errors: [`Fault::Write`] with the path.
+pub fn prepare(dir: &Path) -> Result<(), Fault> {
+    let fault = |source| Fault::Write { path: dir.to_path_buf(), source };
+    fs::create_dir_all(dir).map_err(fault)?;
+    let probe = dir.join(format!(".writable.{}.part", std::process::id()));
+    fs::write(&probe, []).map_err(fault)?;
+    fs::remove_file(&probe).map_err(fault)
+}

@@ -1,0 +1,11 @@
+//! What comes out of a run: its summary, and files with histories, pictures and particles.
+
+#[cfg(feature = "program")]
+pub mod figure;
+#[cfg(feature = "program")]
+pub mod files;
+#[cfg(feature = "program")]
+pub mod report;
+pub mod summary;
+#[cfg(feature = "program")]
+pub mod vtk;

@@ -1,0 +1,160 @@
+//! The figures of a run: errors, peaks, energy, cost.
+
+use crate::method::cost::Cost;
+use crate::method::exact::Exact;
+use crate::method::measure::rms;
+use crate::run::Outcome;
+use crate::scene::wave_speed;
+use crate::scene::{Motion, Quantity, Scene};
+use crate::setup;
+
+/// One line of the summary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    pub quantity: String,
+    pub value: f64,
+    pub unit: &'static str,
+}
+
+/// The scales that make errors relative. For a body thrown at v0 they are those of
+/// the bar: v0, the plateau Z v0/2, and v0 L/4c. For a mode they are V, Z V and V/ω
+/// with its largest speed V; for loads V, Z V and V L/c with V = b L/c + t/Z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// (m/s).
+    pub velocity: f64,
+    /// (Pa).
+    pub stress: f64,
+    /// (m).
+    pub displacement: f64,
+}
+
+impl Scales {
+    pub fn of(scene: &Scene) -> Self {
+        let c = wave_speed(&scene.body);
+        let (rho, transit) = (scene.body.density, scene.body.length[0] / c);
+        let size = |list: &[f64]| libm::sqrt(list.iter().map(|x| x * x).sum());
+        let thrown = match &scene.motion {
+            Motion::Regions(regions) => {
+                regions.iter().map(|region| size(&region.velocity)).fold(0.0, f64::max)
+            }
+            _ => 0.0,
+        };
+        if thrown > 0.0 {
+            return Scales {
+                velocity: thrown,
+                stress: rho * c * thrown / 2.0,
+                displacement: thrown * scene.body.length[0] / (4.0 * c),
+            };
+        }
+        let (velocity, displacement) = match setup::exact(scene) {
+            Ok(Exact::Linear { vibration: Some(v), .. }) => {
+                (v.velocity.abs(), v.velocity.abs() / (v.c * v.mode.k))
+            }
+            Ok(Exact::Manufactured(m)) => ((m.amplitude * m.c * m.mode.k).abs(), m.amplitude.abs()),
+            _ => {
+                let body = scene.body_force.as_ref().map_or(0.0, |b| size(&b.acceleration));
+                let sides = scene.traction.iter().flat_map(|load| load.sides.iter().flatten());
+                let traction = sides.map(|t| size(t)).fold(0.0, f64::max);
+                let velocity = body * transit + traction / (rho * c);
+                (velocity, velocity * transit)
+            }
+        };
+        Scales { velocity, stress: rho * c * velocity, displacement }
+    }
+
+    /// The scale of a quantity.
+    pub fn scale(&self, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::Velocity(_) => self.velocity,
+            Quantity::Stress(..) => self.stress,
+            Quantity::Displacement(_) => self.displacement,
+        }
+    }
+}
+
+/// All lines of the summary; `wall_time` (s) of the time loop.
+pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<Line> {
+    let mut lines = Vec::new();
+    let mut add = |quantity: String, value: f64, unit| lines.push(Line { quantity, value, unit });
+    let scales = Scales::of(scene);
+    let exact = setup::exact(scene).is_ok();
+    let column = |name: &str| outcome.history.column(name).unwrap_or_default();
+    let peak = |list: &[f64]| list.iter().fold(0.0, |peak: f64, x| peak.max(x.abs()));
+
+    for probe in &scene.probes {
+        let name = &probe.name;
+        let unit = probe.quantity.name_unit().1;
+        let computed = column(name);
+        if exact {
+            let expected = column(&format!("{name}_exact"));
+            let error = rms(computed.iter().copied().zip(expected.iter().copied()));
+            add(format!("{name}_rms"), error, unit);
+            let scale = scales.scale(probe.quantity);
+            if scale > 0.0 {
+                add(format!("{name}_rms_relative"), error / scale, "1");
+            }
+            add(format!("{name}_peak_exact"), peak(&expected), unit);
+        }
+        add(format!("{name}_peak"), peak(&computed), unit);
+    }
+    if exact {
+        let of = |name: &str| outcome.particles.column(name).unwrap_or_default();
+        for (name, unit, scale) in [
+            ("velocity", "m/s", scales.velocity),
+            ("stress", "Pa", scales.stress),
+            ("displacement", "m", scales.displacement),
+        ] {
+            let error = rms(of(name).into_iter().zip(of(&format!("{name}_exact"))));
+            add(format!("{name}_field_rms"), error, unit);
+            if scale > 0.0 {
+                add(format!("{name}_field_rms_relative"), error / scale, "1");
+            }
+        }
+    }
+    let kinetic = column("kinetic_energy");
+    let total: Vec<f64> = kinetic
+        .iter()
+        .zip(column("strain_energy"))
+        .map(|(kinetic, strain)| kinetic + strain)
+        .collect();
+    if let (Some(&first), Some(&last)) = (total.first(), total.last()) {
+        add("energy_start".into(), first, "J");
+        add("energy_end".into(), last, "J");
+        if scene.is_loaded() {
+            let work = column("work");
+            add("work_end".into(), work.last().copied().unwrap_or_default(), "J");
+            let largest = peak(&total);
+            let balance: Vec<f64> =
+                total.iter().zip(&work).map(|(energy, work)| energy - first - work).collect();
+            if largest > 0.0 {
+                add("energy_balance_largest".into(), peak(&balance) / largest, "1");
+            }
+        } else if first > 0.0 {
+            let drift: Vec<f64> = total.iter().map(|energy| energy / first - 1.0).collect();
+            add("energy_drift".into(), last / first - 1.0, "1");
+            add("energy_drift_largest".into(), peak(&drift), "1");
+        }
+    }
+    add("time_step".into(), outcome.dt, "s");
+    add("courant_number".into(), scene.courant_number(), "1");
+    add("wall_time".into(), wall_time, "s");
+    lines
+}
+
+/// The unit of a cost counter.
+pub fn cost_unit(name: &str) -> &'static str {
+    if name == "bytes_per_particle" { "B" } else { "1" }
+}
+
+/// The cost counters as lines.
+pub fn cost_lines(cost: &Cost) -> Vec<Line> {
+    cost.named()
+        .into_iter()
+        .map(|(name, count)| Line {
+            quantity: name.to_string(),
+            value: count as f64,
+            unit: cost_unit(name),
+        })
+        .collect()
+}

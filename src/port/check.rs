@@ -1,0 +1,335 @@
+//! A port's trace against a reference: the first number that differs, in the paper's
+//! order.
+
+use super::cause::{self, Traces};
+use super::entry::{COLUMNS, Entry, PAIRS, Place, SYMBOLS, number, place};
+use super::rows::{self, Rows, brief};
+use crate::scene::fault::Fault;
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::io::Read;
+
+/// How far two numbers may be apart: `relative` times the larger of them, plus
+/// `absolute` times the largest value that the symbol has in its time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    pub relative: f64,
+    pub absolute: f64,
+}
+
+/// The first number that differs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Divergence {
+    pub reference: Entry,
+    pub theirs: f64,
+    /// The line in which it stands, if in any.
+    pub line: Option<u64>,
+    /// Numbers between the two.
+    pub ulps: u64,
+    /// Where the likely cause is known.
+    pub cause: Option<&'static str>,
+}
+
+/// What a comparison found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    pub compared: usize,
+    pub divergence: Option<Divergence>,
+    /// Symbols of the reference with the number of values that were not there.
+    pub missing: BTreeMap<&'static str, usize>,
+    /// Time steps of the reference of which nothing was there.
+    pub missing_steps: BTreeSet<usize>,
+    /// How many numbers the reference does not have; they are left out.
+    pub extra: usize,
+}
+
+/// All numbers of a particle or node that one step makes of a symbol.
+type Row = (usize, usize, &'static str, usize);
+
+fn row(entry: &Entry) -> Row {
+    (entry.k, entry.step, entry.symbol, entry.index)
+}
+
+/// What a port has printed.
+#[derive(Clone, Debug)]
+pub struct Printed {
+    name: String,
+    pub entries: Vec<Entry>,
+    /// The line of each entry; empty if they were never in a file.
+    lines: Vec<u64>,
+}
+
+impl Printed {
+    /// The line of entry `n`, if it was ever in a file.
+    fn line(&self, n: usize) -> Option<u64> {
+        self.lines.get(n).copied()
+    }
+
+    fn alone(&self, line: Option<u64>, problem: String) -> Fault {
+        let line = line.map_or(String::new(), |line| format!(", line {line}"));
+        Fault::Alone { place: format!("{}{line}", self.name), problem }
+    }
+}
+
+impl From<Vec<Entry>> for Printed {
+    fn from(entries: Vec<Entry>) -> Self {
+        Printed { name: "theirs".to_string(), entries, lines: Vec::new() }
+    }
+}
+
+/// Reads a CSV file with the columns of a trace, in any order; other columns are not
+/// read.
+///
+/// Errors: [`Fault::Read`]; [`Fault::Points`] with the line: a missing column, a value
+/// that is not a number or not finite, a symbol that is not known, a node where none
+/// belongs or none where one does, a line that stands twice.
+pub fn read(name: &str, input: impl Read) -> Result<Printed, Fault> {
+    let text = rows::text(name, input)?;
+    let wanted = format!("the columns {}", COLUMNS.join(","));
+    let mut rows = Rows::of(name, &text, wanted)?;
+    let mut at = [0; COLUMNS.len()];
+    for (place, column) in at.iter_mut().zip(COLUMNS) {
+        *place = rows
+            .header
+            .iter()
+            .position(|found| found == column)
+            .ok_or_else(|| rows.no_header(format!("there is no column `{column}`")))?;
+    }
+    let (mut entries, mut lines, mut seen) = (Vec::new(), Vec::new(), HashMap::new());
+    while let Some((line, record)) = rows.next_row()? {
+        let cell = |n: usize| record.get(at[n]).unwrap_or("");
+        let fault = |problem: String, allowed: String| rows.fault(line, problem, allowed);
+        let whole = |n: usize| {
+            cell(n).parse::<usize>().map_err(|_| {
+                let problem = format!("`{}` is not a value of {}", brief(cell(n)), COLUMNS[n]);
+                fault(problem, "a whole number from 0 up".into())
+            })
+        };
+        let symbol = SYMBOLS.iter().map(|symbol| symbol.0).find(|name| *name == cell(2));
+        let symbol = symbol.ok_or_else(|| {
+            let names: Vec<&str> = SYMBOLS.iter().map(|symbol| symbol.0).collect();
+            fault(format!("`{}` is not a symbol", brief(cell(2))), names.join(", "))
+        })?;
+        let value = number(cell(6)).filter(|x| x.is_finite()).ok_or_else(|| {
+            let problem = format!("`{}` is not a value of {symbol}", brief(cell(6)));
+            fault(problem, "a finite number, decimal or hexadecimal".into())
+        })?;
+        let node = match (PAIRS.contains(&symbol), cell(4)) {
+            (true, _) => Some(whole(4)?),
+            (false, "") => None,
+            (false, node) => {
+                let problem = format!("{symbol} is not a pair, and has the node `{}`", brief(node));
+                return Err(fault(problem, "an empty cell for the node".into()));
+            }
+        };
+        let (k, step, index, component) = (whole(0)?, whole(1)?, whole(3)?, whole(5)?);
+        let entry = Entry { k, step, symbol, index, node, component, value };
+        if let Some(before) = seen.insert(place(&entry), line) {
+            let problem = format!("the same number stands in line {before} already");
+            return Err(fault(problem, "each number once".into()));
+        }
+        entries.push(entry);
+        lines.push(line);
+    }
+    Ok(Printed { name: name.to_string(), entries, lines })
+}
+
+/// Numbers between a and b, counted as steps of the last bit.
+pub fn ulps(a: f64, b: f64) -> u64 {
+    // Ordered like the numbers: negative ones mirrored.
+    let order = |x: f64| {
+        let bits = (x + 0.0).to_bits() as i64;
+        if bits < 0 { i64::MIN - bits } else { bits }
+    };
+    order(a).abs_diff(order(b))
+}
+
+// ANCHOR: compare
+/// Compares what both have, in the paper's order, up to the first difference.
+///
+/// A port may leave out time steps, or symbols of a time step. Of a symbol that it
+/// prints in a time step it prints all numbers, and no others; nodes that a particle
+/// does not see may be there with 0, or not. With `part` only what both have is
+/// compared.
+///
+/// Errors, where nothing differs: [`Fault::Alone`] for a number that only one of them
+/// has, or if they have nothing in common.
+pub fn compare(
+    reference: &[Entry],
+    theirs: &Printed,
+    tolerance: Tolerance,
+    part: bool,
+) -> Result<Report, Fault> {
+    let mut scales: HashMap<(usize, &str), f64> = HashMap::new();
+    for entry in reference {
+        let scale = scales.entry((entry.k, entry.symbol)).or_insert(0.0);
+        *scale = scale.max(entry.value.abs());
+    }
+    let (given, own) = (by_place(reference), Own::new(theirs));
+    let (reference, extra) = with_unseen_nodes(reference, &given, theirs);
+    let mut report = Report {
+        compared: 0,
+        divergence: None,
+        missing: BTreeMap::new(),
+        missing_steps: reference.iter().map(|entry| entry.k).collect(),
+        extra: extra.len(),
+    };
+    let (mut first, mut gap) = (None, None);
+    for entry in &reference {
+        let Some(value) = own.value(entry) else {
+            gap = gap.or(Some(entry).filter(|_| own.has_symbol(entry)));
+            *report.missing.entry(entry.symbol).or_insert(0) += 1;
+            continue;
+        };
+        report.compared += 1;
+        report.missing_steps.remove(&entry.k);
+        let size = entry.value.abs().max(value.abs());
+        let scale = scales.get(&(entry.k, entry.symbol)).copied().unwrap_or(0.0);
+        let room = tolerance.relative * size + tolerance.absolute * scale;
+        if first.is_none() && (value - entry.value).abs() > room {
+            first = Some((entry, value));
+        }
+    }
+    if let Some((entry, value)) = first {
+        report.divergence = Some(Divergence {
+            reference: entry.clone(),
+            theirs: value,
+            line: own.line(entry),
+            ulps: ulps(entry.value, value),
+            cause: cause::of(
+                entry,
+                value,
+                &reference,
+                Traces { reference: &given, theirs: &own.values },
+            ),
+        });
+        return Ok(report);
+    }
+    match (extra.first(), gap) {
+        (Some(n), _) if !part => {
+            let entry = spelled(&theirs.entries[*n]);
+            let problem = format!("there is {entry}, which the reference has not");
+            Err(theirs.alone(theirs.line(*n), problem))
+        }
+        (_, Some(entry)) if !part => {
+            let problem = format!("there is no {}, but others of its kind", spelled(entry));
+            Err(theirs.alone(None, problem))
+        }
+        _ if report.compared == 0 => {
+            Err(theirs.alone(None, "it has nothing that the reference has".into()))
+        }
+        _ => Ok(report),
+    }
+}
+// ANCHOR_END: compare
+
+fn by_place(entries: &[Entry]) -> HashMap<Place, f64> {
+    entries.iter().map(|entry| (place(entry), entry.value)).collect()
+}
+
+/// What a port has printed, to look things up.
+struct Own<'a> {
+    values: HashMap<Place, f64>,
+    lines: HashMap<Place, u64>,
+    rows: HashSet<Row>,
+    symbols: HashSet<(usize, usize, &'a str)>,
+}
+
+impl<'a> Own<'a> {
+    fn new(theirs: &'a Printed) -> Self {
+        let places = || theirs.entries.iter().map(place);
+        Own {
+            values: by_place(&theirs.entries),
+            lines: places().zip(theirs.lines.iter().copied()).collect(),
+            rows: theirs.entries.iter().map(row).collect(),
+            symbols: theirs.entries.iter().map(|e| (e.k, e.step, e.symbol)).collect(),
+        }
+    }
+
+    /// Its value; 0 for a node that is not among those of its particle.
+    fn value(&self, entry: &Entry) -> Option<f64> {
+        let unseen = || (entry.node.is_some() && self.rows.contains(&row(entry))).then_some(0.0);
+        self.values.get(&place(entry)).copied().or_else(unseen)
+    }
+
+    fn line(&self, entry: &Entry) -> Option<u64> {
+        self.lines.get(&place(entry)).copied()
+    }
+
+    fn has_symbol(&self, entry: &Entry) -> bool {
+        self.symbols.contains(&(entry.k, entry.step, entry.symbol))
+    }
+}
+
+/// The reference in the paper's order, with a 0 for every node that only `theirs` has
+/// at a particle; and which entries else only `theirs` has.
+fn with_unseen_nodes(
+    reference: &[Entry],
+    given: &HashMap<Place, f64>,
+    theirs: &Printed,
+) -> (Vec<Entry>, Vec<usize>) {
+    let rows: HashSet<(Row, usize)> = reference.iter().map(|e| (row(e), e.component)).collect();
+    let (mut all, mut extra) = (reference.to_vec(), Vec::new());
+    for (n, entry) in theirs.entries.iter().enumerate() {
+        if given.contains_key(&place(entry)) {
+            continue;
+        }
+        if entry.node.is_some() && rows.contains(&(row(entry), entry.component)) {
+            all.push(Entry { value: 0.0, ..entry.clone() });
+        } else {
+            extra.push(n);
+        }
+    }
+    let order = |symbol: &str| SYMBOLS.iter().position(|known| known.0 == symbol);
+    all.sort_by_key(|e| (e.k, e.step, order(e.symbol), e.index, e.node, e.component));
+    (all, extra)
+}
+
+/// Where an entry stands, in words.
+fn spelled(entry: &Entry) -> String {
+    let Entry { k, step, symbol, index, node, component, .. } = entry;
+    let node = node.map_or(String::new(), |node| format!(", node {node}"));
+    format!("{symbol} of k = {k}, step {step}, index {index}{node}, component {component}")
+}
+
+impl Report {
+    /// The report for a reader; `reference` and `theirs` are the files.
+    pub fn text(&self) -> String {
+        let mut text = match &self.divergence {
+            None => {
+                let all = self.compared + self.missing.values().sum::<usize>();
+                format!("{} of {all} numbers agree\n", self.compared)
+            }
+            Some(Divergence { reference: r, theirs, line, ulps, cause }) => {
+                let (equation, link) = cause::source(r);
+                let node = r.node.map_or(String::new(), |node| format!(", node {node}"));
+                let line = line.map_or(String::new(), |line| format!(" in line {line}"));
+                let size = r.value.abs().max(theirs.abs());
+                let relative = (theirs / size - r.value / size).abs();
+                let apart = match r.value * theirs > 0.0 {
+                    true => format!("{ulps} numbers apart"),
+                    false => "not of one sign".to_string(),
+                };
+                let cause = cause.map_or(String::new(), |c| format!("  likely: {c}\n"));
+                format!(
+                    "first difference: k = {}, step {}, {} of {equation}, index {}{node}, \
+                     component {}\n  reference {:?}\n  theirs    {:?}{line}\n  relative \
+                     {relative:.1e}, {apart}\n{cause}  book: {link}\n",
+                    r.k, r.step, r.symbol, r.index, r.component, r.value, theirs
+                )
+            }
+        };
+        let before = |k: &&usize| self.divergence.as_ref().is_some_and(|d| **k < d.reference.k);
+        if let Some(k) = self.missing_steps.iter().find(before) {
+            text += &format!("it may come from before: nothing of k = {k} was compared\n");
+        }
+        if !self.missing.is_empty() {
+            let list: Vec<String> =
+                self.missing.iter().map(|(symbol, n)| format!("{symbol} ({n})")).collect();
+            text += &format!("not compared, since they are not there: {}\n", list.join(", "));
+        }
+        if self.extra > 0 {
+            text += &format!("not compared, since the reference has none: {}\n", self.extra);
+        }
+        text
+    }
+}

@@ -1,0 +1,224 @@
+//! CSV of points in, CSV of values out: the commands `exact` and `shape`.
+
+use super::rows::{self, Rows};
+use crate::method::basis::support::{self, Values};
+use crate::method::basis::{self, Basis, Scratch};
+use crate::method::breakdown::Breakdown;
+use crate::method::continuum::shape::Shape;
+use crate::method::grid::Grid;
+use crate::run::table::{csv, shortest};
+use crate::scene::Scene;
+use crate::scene::fault::Fault;
+use crate::setup;
+use nalgebra::SVector;
+use std::io::Read;
+
+/// Points read from CSV: the columns found, and one row for each line.
+pub struct Points {
+    name: String,
+    rows: Vec<(u64, Vec<f64>)>,
+}
+
+impl Points {
+    /// Reads the first of `layouts` that fits the header: columns by name, in
+    /// any order. All values must be finite.
+    ///
+    /// Errors: [`Fault::Points`] with the line.
+    pub fn read(name: &str, input: impl Read, layouts: &[&[&str]]) -> Result<Self, Fault> {
+        let names: Vec<String> = layouts.iter().map(|layout| layout.join(",")).collect();
+        let wanted = format!("a header line with the columns {}", names.join(" or "));
+        let text = rows::text(name, input)?;
+        let mut lines = Rows::of(name, &text, wanted)?;
+        let header = lines.header.clone();
+        let find = |layout: &&&[&str]| {
+            layout.len() == header.len() && layout.iter().all(|c| header.iter().any(|h| h == *c))
+        };
+        let Some(layout) = layouts.iter().find(find) else {
+            let found: Vec<&str> = header.iter().collect();
+            let problem = format!("the columns are `{}`", rows::brief(&found.join(",")));
+            return Err(lines.no_header(problem));
+        };
+        let mut rows = Vec::new();
+        while let Some((line, record)) = lines.next_row()? {
+            let mut row = Vec::new();
+            for column in *layout {
+                let at = header.iter().position(|h| h == *column).unwrap_or(0);
+                let text = record.get(at).unwrap_or("");
+                match text.parse::<f64>() {
+                    Ok(x) if x.is_finite() => row.push(x),
+                    _ => {
+                        let problem = format!("`{}` is not a value of {column}", rows::brief(text));
+                        return Err(lines.fault(line, problem, "a finite number".to_string()));
+                    }
+                }
+            }
+            rows.push((line, row));
+        }
+        Ok(Points { name: name.to_string(), rows })
+    }
+
+    /// Number of coordinates of each point.
+    fn dimension(&self) -> usize {
+        self.rows.first().map_or(0, |(_, row)| row.len())
+    }
+
+    fn vectors<const D: usize>(&self) -> Vec<SVector<f64, D>> {
+        self.rows.iter().map(|(_, row)| SVector::from_fn(|d, _| row[d])).collect()
+    }
+
+    /// The fault `problem` in the line of point `n`.
+    fn fault(&self, n: usize, problem: String, allowed: String) -> Fault {
+        let line = self.rows.get(n).map_or(1, |(line, _)| *line);
+        Fault::Points { path: self.name.clone(), line, problem, allowed }
+    }
+}
+
+/// `x,t` → `x,t,velocity,stress,displacement` of the scene's exact solution; x
+/// in the scene's coordinates, at t = 0.
+///
+/// Errors: [`Fault::NoExact`]; [`Fault::Points`] with the line of the first
+/// point that is not a number, outside the body, or before t = 0.
+pub fn exact_at(scene: &Scene, name: &str, input: impl Read) -> Result<Vec<u8>, Fault> {
+    let exact = setup::exact(scene)?;
+    let points = Points::read(name, input, &[&["x", "t"]])?;
+    let (origin, length) = (scene.body.origin[0], scene.body.length[0]);
+    let end = origin + length;
+    let mut rows = Vec::new();
+    for (n, (_, row)) in points.rows.iter().enumerate() {
+        let (x, t) = (row[0], row[1]);
+        let named =
+            |what: &str, value: f64| format!("`{}` is not a value of {what}", shortest(value));
+        if !(origin <= x && x <= end) {
+            let allowed = format!("a number from {} to {}", shortest(origin), shortest(end));
+            return Err(points.fault(n, named("x", x), allowed));
+        }
+        if !(0.0..=exact.latest()).contains(&t) {
+            let allowed = format!("a number from 0 to {}", shortest(exact.latest()));
+            return Err(points.fault(n, named("t", t), allowed));
+        }
+        // At the body's own upper corner, to the last bit, as in a scene.
+        let fields = exact.at(if x == end { length } else { x - origin }, t);
+        let values = [x, t, fields.velocity, fields.stress, fields.displacement];
+        rows.push(values.map(shortest).to_vec());
+    }
+    csv(&["x", "t", "velocity", "stress", "displacement"], rows.into_iter())
+}
+
+/// Coordinates of nodes and of points for `shape`.
+pub const COORDINATES: [&[&str]; 3] = [&["x"], &["x", "y"], &["x", "y", "z"]];
+
+/// `point,node,N,dN_dx[,dN_dy[,dN_dz]]` of a basis with the given nodes and
+/// spacing (m), points and nodes counted from 0, nodes outside the support left
+/// out. `half_length` of [`Basis::Ugimp`] is in units of the spacing.
+///
+/// Errors: [`Fault::Points`] with the line of a point that the basis cannot
+/// serve, or of a node that is not on a regular grid where the basis needs one.
+pub fn shape_at(
+    basis: &Basis,
+    spacing: f64,
+    nodes: &Points,
+    points: &Points,
+) -> Result<Vec<u8>, Fault> {
+    if nodes.rows.is_empty() {
+        let allowed = "at least one node".to_string();
+        return Err(nodes.fault(0, "there are no nodes".to_string(), allowed));
+    }
+    if !points.rows.is_empty() && points.dimension() != nodes.dimension() {
+        let problem = format!("points have {} coordinates", points.dimension());
+        let allowed = format!("{}, as the nodes have", nodes.dimension());
+        return Err(points.fault(0, problem, allowed));
+    }
+    match nodes.dimension() {
+        1 => shape_in::<1>(basis, spacing, nodes, points),
+        2 => shape_in::<2>(basis, spacing, nodes, points),
+        _ => shape_in::<3>(basis, spacing, nodes, points),
+    }
+}
+
+fn shape_in<const D: usize>(
+    basis: &Basis,
+    spacing: f64,
+    nodes: &Points,
+    points: &Points,
+) -> Result<Vec<u8>, Fault> {
+    let place = nodes.vectors::<D>();
+    let grid = match basis {
+        Basis::Lme { .. } => None,
+        _ => Some(regular_grid(spacing, nodes, &place)?),
+    };
+    let mut rows = Vec::new();
+    for (n, x) in points.vectors::<D>().iter().enumerate() {
+        let values = match (basis, &grid) {
+            (Basis::Lme { gamma, cutoff }, _) => support::at(&place, spacing, *gamma, *cutoff, x)
+                .map(|(values, _)| values)
+                .map_err(|failure| {
+                    let allowed =
+                        "a point inside the convex hull of the nodes within R".to_string();
+                    points.fault(n, format!("point {n}: {failure}"), allowed)
+                })?,
+            (_, Some(grid)) => grid.values(basis, x).map_err(|_| {
+                let problem = format!("point {n} stands outside the grid, or reaches beyond it");
+                points.fault(n, problem, "a point inside the grid of nodes".to_string())
+            })?,
+            _ => Values::new(),
+        };
+        let in_support = |(_, N, grad): &(usize, f64, SVector<f64, D>)| {
+            *N != 0.0 || grad.iter().any(|slope| *slope != 0.0)
+        };
+        for (I, N, grad) in values.into_iter().filter(in_support) {
+            let mut row = vec![n.to_string(), I.to_string(), shortest(N)];
+            row.extend(grad.iter().map(|slope| shortest(*slope)));
+            rows.push(row);
+        }
+    }
+    let columns = ["point", "node", "N", "dN_dx", "dN_dy", "dN_dz"];
+    csv(&columns[..3 + D], rows.into_iter())
+}
+
+/// A regular grid and the node of the file at each of its places.
+struct Regular<const D: usize> {
+    grid: Grid<D>,
+    lowest: SVector<f64, D>,
+    file_node: Vec<usize>,
+}
+
+impl<const D: usize> Regular<D> {
+    fn values(&self, basis: &Basis, x: &SVector<f64, D>) -> Result<Values<D>, Breakdown> {
+        let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
+        let x = [x - self.lowest];
+        // Of these bases none has a λ.
+        basis::fill_from_grid(&mut shape, &mut scratch, &mut [], basis, &self.grid, &x)?;
+        Ok(shape.of(0).map(|(I, N, grad)| (self.file_node[I], N, *grad)).collect())
+    }
+}
+
+/// The grid that the nodes form: all places of a box, each taken once.
+fn regular_grid<const D: usize>(
+    spacing: f64,
+    nodes: &Points,
+    place: &[SVector<f64, D>],
+) -> Result<Regular<D>, Fault> {
+    let allowed = || format!("nodes of a full grid with the spacing {}", shortest(spacing));
+    let lowest = place.iter().fold(place[0], |low, x| low.inf(x));
+    let highest = place.iter().fold(place[0], |high, x| high.sup(x));
+    let extent = highest - lowest;
+    let cells: [usize; D] = std::array::from_fn(|d| libm::round(extent[d] / spacing) as usize);
+    let count = cells.iter().fold(1.0, |count, n| count * (*n as f64 + 1.0));
+    if count != place.len() as f64 || cells.contains(&0) {
+        let problem = format!("{} nodes do not fill a box", place.len());
+        return Err(nodes.fault(0, problem, allowed()));
+    }
+    let grid = Grid { h: SVector::repeat(spacing), cells, before: [0; D], upper: extent };
+    let mut file_node = vec![usize::MAX; place.len()];
+    for (n, x) in place.iter().enumerate() {
+        let s = (x - lowest) / spacing;
+        let index = std::array::from_fn(|d| libm::round(s[d]) as usize);
+        let off = (0..D).any(|d| libm::fabs(s[d] - index[d] as f64) > 1e-9);
+        let I = grid.node(index);
+        if off || file_node[I] != usize::MAX {
+            return Err(nodes.fault(n, format!("node {n} is off the grid or doubled"), allowed()));
+        }
+        file_node[I] = n;
+    }
+    Ok(Regular { grid, lowest, file_node })
+}

@@ -1,0 +1,138 @@
+//! Every intermediate of the first steps of a run, in the paper's order: what a port
+//! is held against.
+//!
+//! A trace observes the run's own steps: after each of them it writes down what that step
+//! has made.
+
+use crate::method::breakdown::{BrokenDown, Moment};
+use crate::method::choice::{Integrator, Method};
+use crate::method::model::State;
+use crate::method::reading::StressUpdate;
+use crate::method::time;
+use crate::scene::Scene;
+use crate::scene::fault::Fault;
+use crate::setup;
+
+pub use super::entry::{COLUMNS, Entry, PAIRS, Recorder, SYMBOLS, csv, hex, number};
+
+/// That a trace of `steps` steps has an end in sight.
+///
+/// Errors: [`Fault::Argument`] for more steps than the scene has, or more numbers than
+/// a trace may hold.
+pub fn affordable(scene: &Scene, steps: usize) -> Result<(), Fault> {
+    let (particles, nodes, all_steps) = scene.sizes();
+    let refuse =
+        |problem: String, allowed| Err(Fault::Argument { argument: "--steps", problem, allowed });
+    if steps as f64 > all_steps {
+        let problem = format!("{steps} steps, and the scene has {all_steps}");
+        return refuse(problem, "a whole number up to the number of steps of the scene");
+    }
+    let d = scene.dimension() as f64;
+    let of_particle = scene.pairs_per_particle() * (1.0 + d) + 3.0 * d + 2.0 * d * d + 1.0;
+    let numbers = (steps as f64 + 1.0) * (particles * of_particle + nodes * (1.0 + 5.0 * d));
+    if numbers > MOST_NUMBERS {
+        let problem = format!("{steps} steps of this scene make {numbers:.0e} numbers");
+        return refuse(problem, "so many steps that a trace has 30 million numbers at most");
+    }
+    Ok(())
+}
+
+/// Some gigabytes.
+const MOST_NUMBERS: f64 = 3e7;
+
+/// Runs the first `steps` steps of a scene and returns everything that they made.
+///
+/// Errors: [`BrokenDown`].
+pub fn trace(scene: &Scene, steps: usize) -> Result<Vec<Entry>, BrokenDown> {
+    match scene.dimension() {
+        1 => trace_in::<1>(scene, steps).map(|(entries, _)| entries),
+        2 => trace_in::<2>(scene, steps).map(|(entries, _)| entries),
+        _ => trace_in::<3>(scene, steps).map(|(entries, _)| entries),
+    }
+}
+
+/// The same with the state at the end.
+pub fn trace_in<const D: usize>(
+    scene: &Scene,
+    steps: usize,
+) -> Result<(Vec<Entry>, State<D>), BrokenDown> {
+    let model = setup::model::<D>(scene);
+    let mut state = setup::initial_state(&model, scene);
+    let mut recorder = Recorder::default();
+    recorder.numbers("dt", &[model.dt]);
+    recorder.vectors("x_p", &state.particle.x);
+    recorder.vectors("v_p", &state.particle.v);
+    for k in 0..=steps {
+        let moment = Moment::of(k, model.dt);
+        let loads_at = match k {
+            0 => 0.0,
+            _ => time::time_of_loads(model.method, model.dt, moment.time),
+        };
+        let mut after = |n: usize, state: &State<D>| {
+            recorder.at(k, n);
+            for symbol in made_by(model.method, n) {
+                recorder.symbol(symbol, state, &model, loads_at);
+            }
+        };
+        let done = match k {
+            0 => time::start(&mut state, &model, &mut after),
+            _ => time::advance(&mut state, &model, moment.time, &mut after),
+        };
+        // A number that is none stands in the trace before the step that stumbles over it.
+        recorder.finite().and(done).map_err(|what| what.at(moment))?;
+    }
+    Ok((recorder.entries, state))
+}
+
+/// The symbols that step `n` of a method makes, in the paper's order.
+fn made_by(method: Method, n: usize) -> &'static [&'static str] {
+    const TABLE: &[&str] = &["N_Ip", "grad_N_Ip", "lambda"];
+    const FORCES: &[&str] = &["f_int_I", "f_ext_I", "f_I"];
+    const MATERIAL: &[&str] = &["d_eps_p", "rho_p", "sigma_p"];
+    let integrator = match method {
+        Method::Otm => {
+            return match n {
+                0 => &["m_I", "v_I"],
+                1 => &["v_I"],
+                2 => &["x_I"],
+                3 => &["x_p"],
+                4 => MATERIAL,
+                5 => TABLE,
+                6 => FORCES,
+                _ => &["v_I", "v_p"],
+            };
+        }
+        Method::Mpm(Integrator::Newmark(_)) => {
+            return match n {
+                1 => &["x_p", "v_p"],
+                2 => TABLE,
+                3 => &["m_I", "p_I"],
+                4 => &["v_I"],
+                5 => &["d_eps_p"],
+                6 => &["rho_p", "sigma_p"],
+                7 => FORCES,
+                8 => &["p_I_advanced"],
+                _ => &["v_p"],
+            };
+        }
+        Method::Mpm(integrator) => integrator,
+    };
+    let alpha = matches!(integrator, Integrator::GeneralizedAlpha { .. });
+    match (n, integrator) {
+        (1, _) => TABLE,
+        (2, _) => &["m_I", "p_I"],
+        (3, Integrator::ForwardEuler(StressUpdate::First)) => {
+            &["v_I", "d_eps_p", "rho_p", "sigma_p"]
+        }
+        (3, _) if alpha => &["a_I", "v_I"],
+        (3, _) => &["v_I"],
+        (4, _) => FORCES,
+        (5, _) if alpha => &["a_I_next"],
+        (5, _) => &["p_I_advanced"],
+        (6, _) => &["v_p", "x_p"],
+        (_, Integrator::ForwardEuler(StressUpdate::First)) => &[],
+        (_, Integrator::ForwardEuler(StressUpdate::Last)) => MATERIAL,
+        (_, _) if alpha => MATERIAL,
+        (_, _) => &["v_I", "d_eps_p", "rho_p", "sigma_p"],
+    }
+}

@@ -1,0 +1,63 @@
+//! The time loop: scene → state → step, step, … → history.
+
+mod open;
+mod outcome;
+mod particles;
+mod recorder;
+pub mod stability;
+pub mod table;
+
+pub use open::parse;
+pub use outcome::{Frame, Outcome, Stopped};
+
+use crate::method::breakdown::{BrokenDown, Moment};
+use crate::method::cost::Cost;
+use crate::method::time;
+use crate::scene::Scene;
+use crate::setup;
+use recorder::Recorder;
+
+/// Runs a scene to its end; `progress` hears the number of every finished step.
+///
+/// Errors: [`Stopped`] when the run breaks down.
+pub fn run(scene: &Scene, progress: &mut dyn FnMut(usize)) -> Result<Outcome, Box<Stopped>> {
+    match scene.dimension() {
+        1 => run_in::<1>(scene, progress),
+        2 => run_in::<2>(scene, progress),
+        _ => run_in::<3>(scene, progress),
+    }
+}
+
+fn run_in<const D: usize>(
+    scene: &Scene,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Outcome, Box<Stopped>> {
+    let model = setup::model::<D>(scene);
+    let mut state = setup::initial_state(&model, scene);
+    let mut recorder = Recorder::new(scene, &model, &state);
+    let mut march = || -> Result<(), BrokenDown> {
+        let start = Moment::START;
+        time::start(&mut state, &model, &mut |_, _| {}).map_err(|what| what.at(start))?;
+        recorder.record(&state, start).map_err(|what| what.at(start))?;
+        for step in 1..=model.steps {
+            let moment = Moment::of(step, model.dt);
+            time::advance(&mut state, &model, moment.time, &mut |_, _| {})
+                .and_then(|()| recorder.follow(&state, moment))
+                .map_err(|what| what.at(moment))?;
+            progress(step);
+        }
+        Ok(())
+    };
+    if let Err(broken) = march() {
+        return Err(Box::new(Stopped { broken, history: recorder.history }));
+    }
+    let end = Moment::of(model.steps, model.dt);
+    let bytes_per_particle = model.bytes_per_particle() as u64;
+    Ok(Outcome {
+        particles: recorder.particles(&state, end.time),
+        frames: recorder.frames,
+        history: recorder.history,
+        cost: Cost { bytes_per_particle, ..state.cost() },
+        dt: model.dt,
+    })
+}

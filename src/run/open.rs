@@ -1,0 +1,33 @@
+//! From a scene's text to a scene that is ready to run.
+
+use super::stability;
+use crate::scene::fault::SceneError;
+use crate::scene::{Scene, declare};
+
+/// Reads a scene from `text`, with the `KEY=VALUE` of `sets` in place of its own; `path`
+/// is named in errors. A time step that is declared as a part of the critical one is
+/// bounded by the limit that is predicted here.
+///
+/// Errors: [`SceneError`] with file, line, key and what is allowed.
+pub fn parse(
+    name: &str,
+    path: &str,
+    text: &str,
+    sets: &[String],
+) -> Result<Scene, Box<SceneError>> {
+    let declared = declare(name, path, text, sets)?;
+    let mut scene = declared.scene.clone();
+    let Some(fraction) = scene.time.fraction_of_critical else {
+        return Ok(scene);
+    };
+    let key = "time.fraction_of_critical";
+    let limit = stability::predicted(&scene, 0.0)
+        .map_err(|breakdown| declared.error(key, breakdown.to_string()))?;
+    let courant = scene.courant_number_of(limit * fraction);
+    scene.time.cfl = scene.time.cfl.min(courant);
+    if scene.time.cfl.is_infinite() {
+        return Err(declared.error(key, "nothing strains this body: there is no limit"));
+    }
+    declared.affordable(&scene)?;
+    Ok(scene)
+}

@@ -1,0 +1,35 @@
+//! What comes out of a run.
+
+use super::table::Table;
+use crate::method::breakdown::BrokenDown;
+use crate::method::cost::Cost;
+
+/// What a run gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// One row for each recorded step.
+    pub history: Table,
+    /// The last state, one row for each particle.
+    pub particles: Table,
+    /// The particles at the recorded steps, if the scene asks for them.
+    pub frames: Vec<Frame>,
+    pub cost: Cost,
+    /// Δt (s).
+    pub dt: f64,
+}
+
+/// The particles at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// (s).
+    pub time: f64,
+    /// One row for each particle.
+    pub particles: Table,
+}
+
+/// A run that broke down, with all that it had recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stopped {
+    pub broken: BrokenDown,
+    pub history: Table,
+}

@@ -1,0 +1,122 @@
+//! Everything that can go wrong, by name.
+//!
+//! Two families, two exit codes. Input that cannot be used ([`SceneError`],
+//! [`Fault::Read`], …) ends with 2 before anything is written. A run that
+//! breaks down ([`BrokenDown`]) ends with 1 and leaves its history under a name
+//! that says so.
+
+use crate::method::breakdown::BrokenDown;
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use std::ops::Range;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// An error in a scene: where it stands, what is wrong, what is allowed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneError {
+    /// The file, or `--set` for a value from the command line.
+    pub path: String,
+    /// The text that was read.
+    pub text: String,
+    /// Bytes of `text` that are at fault.
+    pub span: Range<usize>,
+    /// The key at fault, dotted; empty when the text is not TOML.
+    pub key: String,
+    /// What is wrong.
+    pub problem: String,
+    /// What is allowed instead; empty when `problem` says it.
+    pub allowed: String,
+    /// The nearest valid key or value.
+    pub suggestion: Option<String>,
+}
+
+impl SceneError {
+    /// The error as a picture of the offending line.
+    pub fn render(&self, renderer: &Renderer) -> String {
+        let title = match self.key.as_str() {
+            "" => self.problem.clone(),
+            key => format!("{key}: {}", self.problem),
+        };
+        let snippet = Snippet::source(&self.text)
+            .path(&self.path)
+            .annotation(AnnotationKind::Primary.span(self.span.clone()));
+        let mut group: Group<'_> = Level::ERROR.primary_title(title).element(snippet);
+        if !self.allowed.is_empty() {
+            group = group.element(Level::NOTE.message(format!("allowed: {}", self.allowed)));
+        }
+        if let Some(nearest) = &self.suggestion {
+            group = group.element(Level::HELP.message(format!("did you mean `{nearest}`?")));
+        }
+        renderer.render(&[group])
+    }
+}
+
+impl std::fmt::Display for SceneError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.render(&Renderer::plain()))
+    }
+}
+
+impl std::error::Error for SceneError {}
+
+/// Any error of the program.
+#[derive(Debug, Error)]
+pub enum Fault {
+    #[error("{0}")]
+    Scene(Box<SceneError>),
+    #[error("cannot read {path}: {source}")]
+    Read { path: PathBuf, source: std::io::Error },
+    #[error("cannot write {path}: {source}")]
+    Write { path: PathBuf, source: std::io::Error },
+    #[error("{path}, line {line}: {problem}; allowed: {allowed}")]
+    Points { path: String, line: u64, problem: String, allowed: String },
+    #[error("{argument}: {problem}; allowed: {allowed}")]
+    Argument { argument: &'static str, problem: String, allowed: &'static str },
+    #[error(
+        "the time step is too large: c Δt / h is {courant:.4}, and {largest:.4} is the most that \
+         stays bounded; set a smaller time.cfl, or time.fraction_of_critical = 0.9, or \
+         time.allow_unstable = true to see it blow up{}",
+        if *singular {
+            " (with one particle per cell the consistent mass matrix is nearly singular: give \
+             the cells more)"
+        } else {
+            ""
+        }
+    )]
+    Unstable { courant: f64, largest: f64, singular: bool },
+    #[error(
+        "no configuration measured reaches a {quantity} error of {error}: the best has {best:.2e}"
+    )]
+    NothingReaches { quantity: &'static str, error: f64, best: f64 },
+    #[error("no exact solution is known for this scene: {why}")]
+    NoExact { why: &'static str },
+    #[error(
+        "{place}: {problem}; allowed: of a symbol in a time step all numbers or none; --part \
+         compares what both have"
+    )]
+    Alone { place: String, problem: String },
+    #[error("{0}")]
+    Differs(String),
+    #[error("{broken}\n{advice}")]
+    Run {
+        broken: BrokenDown,
+        /// What to try, and where the history was left.
+        advice: String,
+    },
+}
+
+impl Fault {
+    /// 1 for a run that broke down, 2 for input or output that cannot be used.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Fault::Run { .. } | Fault::Differs(_) => 1,
+            _ => 2,
+        }
+    }
+}
+
+impl From<Box<SceneError>> for Fault {
+    fn from(error: Box<SceneError>) -> Self {
+        Fault::Scene(error)
+    }
+}

@@ -1,0 +1,179 @@
+//! What a scene is made of, checked.
+
+use crate::method::basis::Basis;
+use crate::method::choice::{Mass, Method};
+use crate::method::exact::riemann::End;
+
+/// A scene, checked: every value is in range and every list has one entry for
+/// each axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The file's name without its ending, or "scene": where the results go.
+    pub name: String,
+    pub title: String,
+    pub method: Method,
+    pub mass: Mass,
+    pub body: Body,
+    pub grid: GridSpec,
+    pub basis: Basis,
+    pub time: Time,
+    /// For each axis its lower and upper side.
+    pub boundary: Vec<[Side; 2]>,
+    pub motion: Motion,
+    pub body_force: Option<BodyForce>,
+    pub traction: Option<Traction>,
+    pub probes: Vec<Probe>,
+    /// Record every so many steps.
+    pub every: usize,
+    /// Write the particles for ParaView whenever a step is recorded.
+    pub vtk: bool,
+}
+
+/// A box of linear elastic material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// L along each axis (m).
+    pub length: Vec<f64>,
+    /// The lower corner (m).
+    pub origin: Vec<f64>,
+    /// ρ at the start (kg/m³).
+    pub density: f64,
+    /// E (Pa).
+    pub youngs_modulus: f64,
+    /// ν (–).
+    pub poisson_ratio: f64,
+    /// The material is inside these; without any it fills the box.
+    pub balls: Vec<Ball>,
+}
+
+/// The points within a radius: a disc in 2D, a ball in 3D.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ball {
+    /// From the body's lower corner (m).
+    pub centre: Vec<f64>,
+    /// (m).
+    pub radius: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridSpec {
+    /// Cells over the body along each axis.
+    pub cells: Vec<usize>,
+    /// Particles per cell along each axis.
+    pub particles_per_cell: Vec<usize>,
+    /// Cells before and after the body along each axis.
+    pub beyond: Vec<[usize; 2]>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Time {
+    /// The largest Courant number c Δt / h; infinite where only the next bounds it.
+    pub cfl: f64,
+    /// The largest Δt, as a part of the limit that is predicted at the start.
+    pub fraction_of_critical: Option<f64>,
+    /// Run even if the predicted limit of Δt says that it must blow up.
+    pub allow_unstable: bool,
+    /// The end of the run (s).
+    pub end: f64,
+}
+
+/// Which components of the velocity are zero on a side; all false is free.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Side {
+    pub fixed: Vec<bool>,
+}
+
+impl Side {
+    /// The end of a bar with this side.
+    pub fn end(&self) -> End {
+        if self.fixed[0] { End::Fixed } else { End::Free }
+    }
+}
+
+/// How the body moves at the start.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// At rest but for these regions.
+    Regions(Vec<Region>),
+    /// v = V φ(x) in a natural mode of the bar.
+    Vibration { mode: usize, velocity: f64 },
+    /// u = A φ(X) sin ωt, kept going at finite strain by a body force.
+    Manufactured { mode: usize, amplitude: f64 },
+}
+
+/// A force per mass, the same everywhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyForce {
+    /// b (m/s²).
+    pub acceleration: Vec<f64>,
+    /// The time over which it grows linearly (s); 0 for at once.
+    pub ramp: f64,
+}
+
+/// Tractions on the sides of the box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traction {
+    /// For each axis its lower and upper side: t (Pa) per area at t = 0.
+    pub sides: Vec<[Vec<f64>; 2]>,
+    /// The time over which they grow linearly (s); 0 for at once.
+    pub ramp: f64,
+}
+
+/// A box [from, to) in the body's frame with an initial velocity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Lower corner from the body's lower corner (m).
+    pub from: Vec<f64>,
+    /// Upper corner from the body's lower corner (m).
+    pub to: Vec<f64>,
+    /// (m/s).
+    pub velocity: Vec<f64>,
+}
+
+/// A quantity to follow at the particle nearest to a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    pub name: String,
+    pub quantity: Quantity,
+    /// From the body's lower corner (m).
+    pub position: Vec<f64>,
+}
+
+/// A component of a particle's state, axes counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    Velocity(usize),
+    Stress(usize, usize),
+    Displacement(usize),
+}
+
+impl Quantity {
+    /// Name for axis labels and unit.
+    pub fn name_unit(&self) -> (&'static str, &'static str) {
+        match self {
+            Quantity::Velocity(_) => ("velocity", "m/s"),
+            Quantity::Stress(..) => ("stress", "Pa"),
+            Quantity::Displacement(_) => ("displacement", "m"),
+        }
+    }
+}
+
+impl Region {
+    /// True for a point of the box [from, to), x from the body's lower corner.
+    pub fn contains(&self, x: &[f64]) -> bool {
+        (self.from.iter().zip(&self.to).zip(x)).all(|((from, to), x)| from <= x && x < to)
+    }
+}
+
+impl Scene {
+    /// 1, 2 or 3.
+    pub fn dimension(&self) -> usize {
+        self.body.length.len()
+    }
+
+    /// True where forces act from outside.
+    pub fn is_loaded(&self) -> bool {
+        let manufactured = matches!(self.motion, Motion::Manufactured { .. });
+        manufactured || self.body_force.is_some() || self.traction.is_some()
+    }
+}

@@ -1,0 +1,71 @@
+//! What a scene amounts to before anything is built: particles, nodes, pairs, steps.
+
+use super::parts::{Body, Scene};
+use crate::method::basis::{Basis, support};
+use crate::method::continuum::law::LinearElastic;
+
+/// c = √((λ + 2μ) / ρ) (m/s), the speed of a plane wave, (46) in the bar.
+pub fn wave_speed(body: &Body) -> f64 {
+    let law = LinearElastic::new(body.youngs_modulus, body.poisson_ratio);
+    libm::sqrt(law.p_wave_modulus() / body.density)
+}
+
+impl Scene {
+    /// The smallest spacing (m).
+    fn spacing(&self) -> f64 {
+        let per_axis = self.body.length.iter().zip(&self.grid.cells);
+        per_axis.map(|(length, cells)| length / *cells as f64).fold(f64::INFINITY, f64::min)
+    }
+
+    // ANCHOR: step_count
+    /// N_t: as many equal steps as keep c Δt / h at or below `time.cfl`.
+    ///
+    /// A count within 1e-9 (relative) of a whole number is that number, so that
+    /// an end given to ten digits does not cost a step; the Courant number may
+    /// then exceed the bound by as much.
+    pub fn step_count(&self) -> f64 {
+        let count = self.time.end * wave_speed(&self.body) / (self.time.cfl * self.spacing());
+        let whole = libm::round(count);
+        let close = (count - whole).abs() <= 1e-9 * whole;
+        if close && whole > 0.0 { whole } else { libm::ceil(count).max(1.0) }
+    }
+    // ANCHOR_END: step_count
+
+    /// Numbers of particles, nodes and time steps, before anything is built.
+    pub fn sizes(&self) -> (f64, f64, f64) {
+        let (mut particles, mut nodes) = (1.0, 1.0);
+        for d in 0..self.dimension() {
+            let cells = self.grid.cells[d] as f64;
+            let [before, after] = self.grid.beyond[d].map(|n| n as f64);
+            particles *= cells * self.grid.particles_per_cell[d] as f64;
+            nodes *= before + cells + after + 1.0;
+        }
+        (particles, nodes, self.step_count())
+    }
+
+    /// The most nodes that a particle can see, before anything is built.
+    pub fn pairs_per_particle(&self) -> f64 {
+        let along = |d: usize| {
+            let [before, after] = self.grid.beyond[d];
+            let nodes = (before + self.grid.cells[d] + after) as f64 + 1.0;
+            match self.basis {
+                Basis::Linear => 2.0,
+                Basis::Ugimp { .. } | Basis::BSpline => 3.0,
+                Basis::Lme { gamma, cutoff } => {
+                    (2.0 * support::radius(gamma, cutoff) + 2.0).min(nodes)
+                }
+            }
+        };
+        (0..self.dimension()).map(along).product()
+    }
+
+    /// c Δt / h of a time step (s).
+    pub fn courant_number_of(&self, dt: f64) -> f64 {
+        wave_speed(&self.body) * dt / self.spacing()
+    }
+
+    /// c Δt / h of the run, at or below `time.cfl`.
+    pub fn courant_number(&self) -> f64 {
+        wave_speed(&self.body) * self.time.end / (self.step_count() * self.spacing())
+    }
+}

@@ -1,0 +1,61 @@
+//! Which exact solution a scene has.
+
+use crate::method::continuum::law::LinearElastic;
+use crate::method::exact::Exact;
+use crate::method::exact::forced::{Forced, Load};
+use crate::method::exact::manufactured::Manufactured;
+use crate::method::exact::mode::{Mode, Vibration};
+use crate::method::exact::riemann::{Bar, Patch};
+use crate::scene::fault::Fault;
+use crate::scene::{Motion, Scene, wave_speed};
+
+/// The exact solution of `scene`.
+///
+/// Errors: [`Fault::NoExact`] with the reason.
+pub fn exact(scene: &Scene) -> Result<Exact, Fault> {
+    if scene.dimension() > 1 {
+        return Err(Fault::NoExact { why: "it has more than one dimension" });
+    }
+    let ends = [0, 1].map(|upper: usize| scene.boundary[0][upper].end());
+    let law = LinearElastic::new(scene.body.youngs_modulus, scene.body.poisson_ratio);
+    let (length, density, modulus) =
+        (scene.body.length[0], scene.body.density, law.p_wave_modulus());
+    let c = wave_speed(&scene.body);
+    let mut thrown = Bar { length, density, modulus, ends, patches: Vec::new() };
+    let mut vibration = None;
+    match &scene.motion {
+        Motion::Regions(regions) => {
+            thrown.patches = regions
+                .iter()
+                .map(|a| Patch { from: a.from[0], to: a.to[0], velocity: a.velocity[0] })
+                .collect();
+        }
+        Motion::Vibration { mode, velocity } => {
+            let mode = Mode::new(ends, *mode, length);
+            vibration = Some(Vibration { mode, velocity: *velocity, c, modulus });
+        }
+        Motion::Manufactured { mode, amplitude } => {
+            let mode = Mode::new(ends, *mode, length);
+            let amplitude = *amplitude;
+            return Ok(Exact::Manufactured(Manufactured { mode, amplitude, c, modulus }));
+        }
+    }
+    let side = |upper: usize| {
+        let traction = scene.traction.as_ref().map_or(0.0, |t| t.sides[0][upper][0]);
+        let ramp = scene.traction.as_ref().map_or(0.0, |t| t.ramp);
+        Load { value: traction, ramp }
+    };
+    let loaded = scene.body_force.is_some() || scene.traction.is_some();
+    let forced = loaded.then(|| Forced {
+        length,
+        c,
+        Z: density * c,
+        ends,
+        body: scene
+            .body_force
+            .as_ref()
+            .map_or(Load::default(), |body| Load { value: body.acceleration[0], ramp: body.ramp }),
+        traction: [side(0), side(1)],
+    });
+    Ok(Exact::Linear { thrown, vibration, forced })
+}

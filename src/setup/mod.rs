@@ -1,0 +1,100 @@
+//! From a scene to what the time loop needs: model and state at k = 0, loads, and the
+//! exact solution.
+
+mod exact;
+pub mod lattice;
+
+pub use exact::exact;
+
+use crate::method::choice::Method;
+use crate::method::continuum::law::LinearElastic;
+use crate::method::continuum::state::Particles;
+use crate::method::grid::Grid;
+use crate::method::model::{Model, State};
+use crate::scene::{Motion, Scene};
+use nalgebra::SVector;
+
+/// The model of a scene with D axes.
+pub fn model<const D: usize>(scene: &Scene) -> Model<D> {
+    let grid = grid::<D>(scene);
+    let places = lattice::places(scene);
+    let fixed = match scene.method {
+        Method::Mpm(_) => fixed(scene, &grid),
+        Method::Otm => {
+            // Its nodes are the corners of the cells that hold particles.
+            let corners = lattice::corners(&grid, &places);
+            let number = |(I, i): (usize, usize)| Some((corners.binary_search(&I).ok()?, i));
+            fixed(scene, &grid).into_iter().filter_map(number).collect()
+        }
+    };
+    let steps = scene.step_count();
+    Model {
+        fixed,
+        grid,
+        basis: scene.basis,
+        law: LinearElastic::new(scene.body.youngs_modulus, scene.body.poisson_ratio),
+        loads: lattice::loads(scene, &places),
+        method: scene.method,
+        mass: scene.mass,
+        dt: scene.time.end / steps,
+        steps: steps as usize,
+    }
+}
+
+fn grid<const D: usize>(scene: &Scene) -> Grid<D> {
+    Grid::over(
+        std::array::from_fn(|d| scene.body.length[d]),
+        std::array::from_fn(|d| scene.grid.cells[d]),
+        std::array::from_fn(|d| scene.grid.beyond[d]),
+    )
+}
+
+/// The state at k = 0: particles in every cell of the body, each with its
+/// share of the cell's mass (unit thickness in the missing directions), moving
+/// as its region says.
+pub fn initial_state<const D: usize>(model: &Model<D>, scene: &Scene) -> State<D> {
+    let places = lattice::places::<D>(scene);
+    let rho = scene.body.density;
+    let mut particle = Particles::at_rest(places.iter().map(|place| place.x).collect(), rho);
+    let exact = exact(scene);
+    for (p, place) in places.iter().enumerate() {
+        particle.m[p] = rho * place.volume;
+        particle.v[p] = match (&scene.motion, &exact) {
+            (Motion::Regions(regions), _) => {
+                let region = regions.iter().find(|r| r.contains(place.x.as_slice()));
+                region.map_or(SVector::zeros(), |r| SVector::from_fn(|d, _| r.velocity[d]))
+            }
+            (_, Ok(exact)) => SVector::repeat(exact.at(place.x[0], 0.0).velocity),
+            // A mode of more than one dimension is refused with the scene.
+            (_, Err(_)) => SVector::zeros(),
+        };
+    }
+    let nodes = match model.method {
+        Method::Mpm(_) => Vec::new(),
+        Method::Otm => {
+            let corners = lattice::corners(&model.grid, &places);
+            corners.into_iter().map(|I| model.grid.position(I)).collect()
+        }
+    };
+    State::new(model, particle, nodes)
+}
+
+/// Nodes on or beyond a side with fixed components.
+fn fixed<const D: usize>(scene: &Scene, grid: &Grid<D>) -> Vec<(usize, usize)> {
+    let mut fixed = Vec::new();
+    for I in 0..grid.nodes() {
+        let index = grid.index(I);
+        for i in 0..D {
+            let holds = (0..D).any(|axis| {
+                let [lower, upper] = &scene.boundary[axis];
+                let first = grid.before[axis];
+                let last = first + scene.grid.cells[axis];
+                (lower.fixed[i] && index[axis] <= first) || (upper.fixed[i] && index[axis] >= last)
+            });
+            if holds {
+                fixed.push((I, i));
+            }
+        }
+    }
+    fixed
+}
