@@ -15,6 +15,7 @@ mod lme;
 mod loads;
 mod mass;
 mod matrix;
+mod one_bar;
 mod otm;
 mod port;
 mod refusals;
