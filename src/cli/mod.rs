@@ -1,4 +1,4 @@
-//! The commands. No numerics here.
+//! The commands of the program: what a user types, and what the terminal shows.
 
 mod arguments;
 mod studies;

@@ -3,6 +3,7 @@
 use super::table::Table;
 use crate::method::breakdown::BrokenDown;
 use crate::method::cost::Cost;
+use thiserror::Error;
 
 /// What a run gives.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +29,8 @@ pub struct Frame {
 }
 
 /// A run that broke down, with all that it had recorded.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{broken}")]
 pub struct Stopped {
     pub broken: BrokenDown,
     pub history: Table,
