@@ -197,7 +197,7 @@ fn rooms() -> Vec<Room> {
         let comment = comment.map(str::trim).collect::<Vec<_>>().join(" ");
         let says = comment.split(". ").next().unwrap().trim_end_matches('.').to_string();
         let inside = |module: &&String| module.split("::").next() == Some(name);
-        let file = |module: &String| module.splitn(2, "::").nth(1).map(String::from);
+        let file = |module: &String| module.split_once("::").map(|(_, file)| file.to_string());
         let leads = |other: &&&'static str| {
             arrows.iter().any(|(from, to)| inside(&from) && to.split("::").next() == Some(other))
         };

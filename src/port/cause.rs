@@ -128,7 +128,7 @@ fn pair(entry: &Entry, reference: &[Entry]) -> Option<&'static str> {
     })
 }
 
-/// What a symbol usually suffers from.
+/// What a symbol usually suffers from: one table, which is why this function is long.
 fn symbol_tells(entry: &Entry, theirs: f64) -> Option<&'static str> {
     Some(match (entry.symbol, entry.step) {
         ("dt", _) => "Δt = T/n, n the next whole number from T c/(CFL h) up",
