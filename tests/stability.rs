@@ -48,8 +48,9 @@ fn stability_closed_forms_of_the_linear_basis() {
     assert_relative_eq!(found, 3.0_f64.sqrt(), max_relative = 0.002);
 }
 
-/// Every basis with every scheme, both masses, 1, 2 and 4 particles per cell (with
-/// the consistent mass matrix 2 and 4), two offsets: at 0.99 of the predicted limit a run stays bounded, at 1.01 it grows.
+/// Every basis with every scheme, both masses, 1, 2 and 4 particles per cell (with the
+/// consistent mass matrix 2 and 4), two offsets: at 0.99 of the predicted limit a run stays
+/// bounded, at 1.01 it grows.
 #[test]
 fn stability_of_every_combination() {
     let alphas = [

@@ -8,7 +8,7 @@ use crate::scene::fault::Fault;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::io::Read;
 
-/// How far two numbers may be apart: `relative` times the larger of them, plus
+/// A tolerance says how far two numbers may be apart: `relative` times the larger of them, plus
 /// `absolute` times the largest value that the symbol has in its time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
@@ -16,7 +16,7 @@ pub struct Tolerance {
     pub absolute: f64,
 }
 
-/// The first number that differs.
+/// This is the first number that differs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Divergence {
     pub reference: Entry,
@@ -29,7 +29,7 @@ pub struct Divergence {
     pub cause: Option<&'static str>,
 }
 
-/// What a comparison found.
+/// A report says what a comparison found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     pub compared: usize,
@@ -42,14 +42,14 @@ pub struct Report {
     pub extra: usize,
 }
 
-/// All numbers of a particle or node that one step makes of a symbol.
+/// A row is all numbers of a particle or node that one step makes of a symbol.
 type RowPlace = (usize, usize, &'static str, usize);
 
 fn row(entry: &Entry) -> RowPlace {
     (entry.k, entry.step, entry.symbol, entry.index)
 }
 
-/// What a port has printed.
+/// This is what a port has printed.
 #[derive(Clone, Debug)]
 pub struct Printed {
     name: String,
@@ -59,7 +59,7 @@ pub struct Printed {
 }
 
 impl Printed {
-    /// The line of entry `n`, if it was ever in a file.
+    /// Gives the line of entry `n`, if it was ever in a file.
     fn line(&self, n: usize) -> Option<u64> {
         self.lines.get(n).copied()
     }
@@ -108,7 +108,7 @@ pub fn read(name: &str, input: impl Read) -> Result<Printed, Fault> {
     Ok(Printed { name: name.to_string(), entries, lines })
 }
 
-/// The entry of one line, whose cells stand in the order of [`COLUMNS`]; `fault` makes the
+/// Reads the entry of one line, whose cells stand in the order of [`COLUMNS`]; `fault` makes the
 /// fault of this line from what is wrong and what is allowed.
 fn entry(
     cells: &[&str; COLUMNS.len()],
@@ -143,7 +143,7 @@ fn entry(
     Ok(Entry { k, step, symbol, index, node, component, value })
 }
 
-/// Numbers between a and b, counted as steps of the last bit.
+/// Counts the numbers between a and b, as steps of the last bit.
 pub fn ulps(a: f64, b: f64) -> u64 {
     // Ordered like the numbers: negative ones mirrored.
     let order = |x: f64| {
@@ -200,7 +200,7 @@ pub fn compare(
 }
 // ANCHOR_END: compare
 
-/// The fault of a number that only one of two traces has: entry `extra` of `theirs`, or
+/// Names a number that only one of two traces has: entry `extra` of `theirs`, or
 /// the reference's `gap`.
 fn alone(theirs: &Printed, extra: Option<usize>, gap: Option<&Entry>) -> Option<Fault> {
     let too_much = extra.map(|n| {
@@ -213,7 +213,7 @@ fn alone(theirs: &Printed, extra: Option<usize>, gap: Option<&Entry>) -> Option<
     })
 }
 
-/// The largest size that each symbol has in each time step.
+/// Finds the largest size that each symbol has in each time step.
 fn scales(entries: &[Entry]) -> HashMap<(usize, &str), f64> {
     let mut scales = HashMap::new();
     for entry in entries {
@@ -227,7 +227,7 @@ fn by_place(entries: &[Entry]) -> HashMap<Place, f64> {
     entries.iter().map(|entry| (place(entry), entry.value)).collect()
 }
 
-/// What a port has printed, to look things up.
+/// Things that a port has printed are looked up here.
 struct Own<'a> {
     values: HashMap<Place, f64>,
     lines: HashMap<Place, u64>,
@@ -246,7 +246,7 @@ impl<'a> Own<'a> {
         }
     }
 
-    /// Its value; 0 for a node that is not among those of its particle.
+    /// Gives its value; 0 for a node that is not among those of its particle.
     fn value(&self, entry: &Entry) -> Option<f64> {
         let unseen = || (entry.node.is_some() && self.rows.contains(&row(entry))).then_some(0.0);
         self.values.get(&place(entry)).copied().or_else(unseen)
@@ -261,7 +261,7 @@ impl<'a> Own<'a> {
     }
 }
 
-/// The reference in the paper's order, with a 0 for every node that only `theirs` has
+/// Puts the reference into the paper's order, with a 0 for every node that only `theirs` has
 /// at a particle; and which entries else only `theirs` has.
 fn with_unseen_nodes(
     reference: &[Entry],
@@ -286,7 +286,7 @@ fn with_unseen_nodes(
     (all, extra)
 }
 
-/// Where an entry stands, in words.
+/// Says in words where an entry stands.
 fn spelled(entry: &Entry) -> String {
     let Entry { k, step, symbol, index, node, component, .. } = entry;
     let node = node.map_or(String::new(), |node| format!(", node {node}"));
@@ -323,7 +323,7 @@ impl Report {
         (first, gap)
     }
 
-    /// The report for a reader; `reference` and `theirs` are the files.
+    /// Writes the report for a reader; `reference` and `theirs` are the files.
     pub fn text(&self) -> String {
         let mut text = match &self.divergence {
             None => {

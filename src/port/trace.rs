@@ -15,7 +15,7 @@ use crate::setup;
 
 pub use super::entry::{COLUMNS, Entry, PAIRS, Recorder, SYMBOLS, csv, hex, number};
 
-/// That a trace of `steps` steps has an end in sight.
+/// Checks that a trace of `steps` steps has an end in sight.
 ///
 /// Errors: [`Fault::Argument`] for more steps than the scene has, or more numbers than
 /// a trace may hold.
@@ -37,7 +37,7 @@ pub fn affordable(scene: &Scene, steps: usize) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Some gigabytes.
+/// So many numbers take some gigabytes.
 const MOST_NUMBERS: f64 = 3e7;
 
 /// Runs the first `steps` steps of a scene and returns everything that they made.
@@ -51,7 +51,7 @@ pub fn trace(scene: &Scene, steps: usize) -> Result<Vec<Entry>, BrokenDown> {
     }
 }
 
-/// The same with the state at the end.
+/// Does the same and returns the state at the end, too.
 pub fn trace_in<const D: usize>(
     scene: &Scene,
     steps: usize,
@@ -84,7 +84,7 @@ pub fn trace_in<const D: usize>(
     Ok((recorder.entries, state))
 }
 
-/// The symbols that step `n` of a method makes, in the paper's order: one table, which is
+/// Lists the symbols that step `n` of a method makes, in the paper's order: one table, which is
 /// why this function is long.
 fn made_by(method: Method, n: usize) -> &'static [&'static str] {
     const TABLE: &[&str] = &["N_Ip", "grad_N_Ip", "lambda"];
