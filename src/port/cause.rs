@@ -1,6 +1,6 @@
 //! What a difference usually comes from, and where the book tells more.
 
-use super::entry::{Entry, Place, SYMBOLS, place};
+use super::entry::{Address, Entry, SYMBOLS, address};
 use std::collections::HashMap;
 
 /// Gives the equation and its place in the book, by symbol and, in Newmark's scheme, by step.
@@ -22,18 +22,18 @@ pub fn source(entry: &Entry) -> (&'static str, &'static str) {
 
 /// Things are looked up in two traces.
 pub struct Traces<'a> {
-    pub reference: &'a HashMap<Place, f64>,
-    pub theirs: &'a HashMap<Place, f64>,
+    pub reference: &'a HashMap<Address, f64>,
+    pub theirs: &'a HashMap<Address, f64>,
 }
 
 impl Traces<'_> {
     /// Gives the reference's value at the place of `entry`, for another symbol, step or index.
     fn at(&self, entry: &Entry) -> Option<f64> {
-        self.reference.get(&place(entry)).copied()
+        self.reference.get(&address(entry)).copied()
     }
 
     fn theirs_at(&self, entry: &Entry) -> Option<f64> {
-        self.theirs.get(&place(entry)).copied()
+        self.theirs.get(&address(entry)).copied()
     }
 }
 

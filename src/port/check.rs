@@ -2,7 +2,7 @@
 //! order.
 
 use super::cause::{self, Traces};
-use super::entry::{COLUMNS, Entry, PAIRS, Place, SYMBOLS, number, place};
+use super::entry::{Address, COLUMNS, Entry, PAIRS, SYMBOLS, address, number};
 use super::rows::{self, Rows, brief};
 use crate::scene::fault::Fault;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -87,8 +87,8 @@ pub fn read(name: &str, input: impl Read) -> Result<Printed, Fault> {
     let wanted = format!("the columns {}", COLUMNS.join(","));
     let mut rows = Rows::of(name, &text, wanted)?;
     let mut at = [0; COLUMNS.len()];
-    for (place, column) in at.iter_mut().zip(COLUMNS) {
-        *place = rows
+    for (at, column) in at.iter_mut().zip(COLUMNS) {
+        *at = rows
             .header
             .iter()
             .position(|found| found == column)
@@ -98,7 +98,7 @@ pub fn read(name: &str, input: impl Read) -> Result<Printed, Fault> {
     while let Some((line, record)) = rows.next_row()? {
         let fault = |problem: String, allowed: String| rows.fault(line, problem, allowed);
         let entry = entry(&at.map(|n| record.get(n).unwrap_or("")), &fault)?;
-        if let Some(before) = seen.insert(place(&entry), line) {
+        if let Some(before) = seen.insert(address(&entry), line) {
             let problem = format!("the same number stands in line {before} already");
             return Err(fault(problem, "each number once".into()));
         }
@@ -223,21 +223,21 @@ fn scales(entries: &[Entry]) -> HashMap<(usize, &str), f64> {
     scales
 }
 
-fn by_place(entries: &[Entry]) -> HashMap<Place, f64> {
-    entries.iter().map(|entry| (place(entry), entry.value)).collect()
+fn by_place(entries: &[Entry]) -> HashMap<Address, f64> {
+    entries.iter().map(|entry| (address(entry), entry.value)).collect()
 }
 
 /// Things that a port has printed are looked up here.
 struct Own<'a> {
-    values: HashMap<Place, f64>,
-    lines: HashMap<Place, u64>,
+    values: HashMap<Address, f64>,
+    lines: HashMap<Address, u64>,
     rows: HashSet<RowPlace>,
     symbols: HashSet<(usize, usize, &'a str)>,
 }
 
 impl<'a> Own<'a> {
     fn new(theirs: &'a Printed) -> Self {
-        let places = || theirs.entries.iter().map(place);
+        let places = || theirs.entries.iter().map(address);
         Own {
             values: by_place(&theirs.entries),
             lines: places().zip(theirs.lines.iter().copied()).collect(),
@@ -249,11 +249,11 @@ impl<'a> Own<'a> {
     /// Gives its value; 0 for a node that is not among those of its particle.
     fn value(&self, entry: &Entry) -> Option<f64> {
         let unseen = || (entry.node.is_some() && self.rows.contains(&row(entry))).then_some(0.0);
-        self.values.get(&place(entry)).copied().or_else(unseen)
+        self.values.get(&address(entry)).copied().or_else(unseen)
     }
 
     fn line(&self, entry: &Entry) -> Option<u64> {
-        self.lines.get(&place(entry)).copied()
+        self.lines.get(&address(entry)).copied()
     }
 
     fn has_symbol(&self, entry: &Entry) -> bool {
@@ -265,14 +265,14 @@ impl<'a> Own<'a> {
 /// at a particle; and which entries else only `theirs` has.
 fn with_unseen_nodes(
     reference: &[Entry],
-    given: &HashMap<Place, f64>,
+    given: &HashMap<Address, f64>,
     theirs: &Printed,
 ) -> (Vec<Entry>, Vec<usize>) {
     let rows: HashSet<(RowPlace, usize)> =
         reference.iter().map(|e| (row(e), e.component)).collect();
     let (mut all, mut extra) = (reference.to_vec(), Vec::new());
     for (n, entry) in theirs.entries.iter().enumerate() {
-        if given.contains_key(&place(entry)) {
+        if given.contains_key(&address(entry)) {
             continue;
         }
         if entry.node.is_some() && rows.contains(&(row(entry), entry.component)) {

@@ -1,5 +1,6 @@
 //! What a trace is made of: entries, their symbols, and their form as CSV.
 
+use crate::method::basis::Basis;
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::Nodes;
@@ -27,11 +28,11 @@ pub struct Entry {
     pub value: f64,
 }
 
-/// A place says where an entry stands in a trace: k, step, symbol, index, node, component.
-pub type Place = (usize, usize, &'static str, usize, Option<usize>, usize);
+/// An address says where an entry stands in a trace: k, step, symbol, index, node, component.
+pub type Address = (usize, usize, &'static str, usize, Option<usize>, usize);
 
-/// Gives the place of an entry.
-pub fn place(entry: &Entry) -> Place {
+/// Gives the address of an entry.
+pub fn address(entry: &Entry) -> Address {
     let Entry { k, step, symbol, index, node, component, .. } = *entry;
     (k, step, symbol, index, node, component)
 }
@@ -79,13 +80,13 @@ pub const PAIRS: [&str; 2] = ["N_Ip", "grad_N_Ip"];
 
 /// A recorder writes entries of one step of one time step.
 #[derive(Default)]
-pub struct Recorder {
+pub struct TraceRecorder {
     pub entries: Vec<Entry>,
     k: usize,
     step: usize,
 }
 
-impl Recorder {
+impl TraceRecorder {
     /// Says that what follows is of step `step` of time step `k`.
     pub fn at(&mut self, k: usize, step: usize) -> &mut Self {
         (self.k, self.step) = (k, step);
@@ -118,7 +119,10 @@ impl Recorder {
         match symbol {
             "N_Ip" => self.shapes(shape),
             "grad_N_Ip" => self.gradients(shape),
-            "lambda" => self.multipliers(&particle.lambda, &model.grid.h),
+            "lambda" => match model.basis {
+                Basis::Lme { .. } => self.multipliers(&particle.lambda, &model.grid.h),
+                Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline => {}
+            },
             "m_I" => self.numbers(symbol, &node.m),
             "p_I" | "p_I_advanced" => self.vectors(symbol, &node.p),
             "v_I" => self.vectors(symbol, &node.v),

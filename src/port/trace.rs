@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use crate::scene::fault::Fault;
 use crate::setup;
 
-pub use super::entry::{COLUMNS, Entry, PAIRS, Recorder, SYMBOLS, csv, hex, number};
+pub use super::entry::{COLUMNS, Entry, PAIRS, SYMBOLS, TraceRecorder, csv, hex, number};
 
 /// Checks that a trace of `steps` steps has an end in sight.
 ///
@@ -58,7 +58,7 @@ pub fn trace_in<const D: usize>(
 ) -> Result<(Vec<Entry>, State<D>), BrokenDown> {
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
-    let mut recorder = Recorder::default();
+    let mut recorder = TraceRecorder::default();
     recorder.numbers("dt", &[model.dt]);
     recorder.vectors("x_p", &state.particle.x);
     recorder.vectors("v_p", &state.particle.v);

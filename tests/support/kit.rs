@@ -4,7 +4,7 @@ use super::*;
 use lme_mpm::method::continuum::law::{self, LinearElastic};
 use lme_mpm::method::exact::Fields;
 use lme_mpm::method::measure::rms;
-use lme_mpm::port::trace::{self, Entry, Recorder, hex, number};
+use lme_mpm::port::trace::{self, Entry, TraceRecorder, hex, number};
 use lme_mpm::run::stability::predicted;
 use nalgebra::{Matrix1, Matrix2, SMatrix, Vector1};
 use serde::Serialize;
@@ -51,7 +51,7 @@ fn basis_values(sets: &[&str]) -> String {
     // uGIMP's particles must not reach beyond the grid.
     let places: Vec<_> = places.into_iter().filter(|x| tabulated(&[*x]).is_ok()).collect();
     let table = tabulated(&places).unwrap();
-    let mut kernel = Recorder::default();
+    let mut kernel = TraceRecorder::default();
     for (p, x) in places.iter().enumerate() {
         kernel.at(0, 0).components("x_p", p, x.as_slice());
     }
@@ -81,7 +81,7 @@ const ON_NODE: [&str; 12] = [
 ];
 
 fn law_values<const D: usize>(strains: [SMatrix<f64, D, D>; 3]) -> String {
-    let mut kernel = Recorder::default();
+    let mut kernel = TraceRecorder::default();
     let mut k = 0;
     for (E, nu) in [(200e9, 0.0), (1000.0, 0.3), (7.0, -0.4)] {
         for d_eps in strains {
@@ -100,7 +100,7 @@ fn law_values<const D: usize>(strains: [SMatrix<f64, D, D>; 3]) -> String {
 }
 
 fn measure_values() -> String {
-    let mut kernel = Recorder::default();
+    let mut kernel = TraceRecorder::default();
     let cases: [(&[f64], &[f64]); 3] = [
         (&[3.0, 1.0], &[0.0, 5.0]),
         (&[1.0, -1.0], &[0.0, 0.0]),
@@ -126,7 +126,7 @@ fn exact_values() -> String {
         }
     }
     let fields: Vec<Fields> = places.iter().map(|(x, t)| exact.at(*x, *t)).collect();
-    let mut kernel = Recorder::default();
+    let mut kernel = TraceRecorder::default();
     let mut column = |step: usize, symbol: &'static str, values: Vec<f64>| {
         for (n, value) in values.into_iter().enumerate() {
             kernel.at(0, step).components(symbol, n, &[value]);

@@ -45,7 +45,7 @@ impl<const D: usize> MassMatrix<D> {
     }
 
     /// Solves with the matrix: `out`_I = m_I Σ_J (m⁻¹)_IJ q_J, which is q_I itself with the
-    /// lumped one; see [`ConsistentMass::solve`].
+    /// lumped one.
     pub fn solve(&mut self, out: &mut [SVector<f64, D>], q: &[SVector<f64, D>], m: &[f64]) {
         match self {
             MassMatrix::Lumped => out.copy_from_slice(q),

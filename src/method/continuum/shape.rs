@@ -3,9 +3,9 @@
 use crate::method::cost::Cost;
 use nalgebra::SVector;
 
-/// An entry of the table holds node I, N_Ip and ∇N_Ip.
+/// A pair of the table holds node I, N_Ip and ∇N_Ip.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Entry<const D: usize> {
+struct Pair<const D: usize> {
     I: usize,
     N: f64,
     grad_N: SVector<f64, D>,
@@ -20,7 +20,7 @@ struct Entry<const D: usize> {
 pub struct Shape<const D: usize> {
     /// Row p is `entry[start[p]..start[p + 1]]`.
     start: Vec<usize>,
-    entry: Vec<Entry<D>>,
+    entry: Vec<Pair<D>>,
     /// Rows and pairs of all tables so far.
     pub cost: Cost,
 }
@@ -40,7 +40,7 @@ impl<const D: usize> Shape<D> {
 
     /// Adds N_Ip (–) and ∇N_Ip (1/m) to the row that is being written.
     pub fn push(&mut self, I: usize, N: f64, grad_N: SVector<f64, D>) {
-        self.entry.push(Entry { I, N, grad_N });
+        self.entry.push(Pair { I, N, grad_N });
     }
 
     /// Ends the row of the current particle.
