@@ -5,7 +5,7 @@ use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::method::basis::Basis;
 use lme_mpm::method::basis::lme::Failure;
-use lme_mpm::method::basis::support::at as lme_at;
+use lme_mpm::method::basis::scattered::values_at as lme_at;
 use lme_mpm::method::grid::Grid;
 use lme_mpm::output::figure;
 use nalgebra::{Matrix2, SVector, Vector1, Vector2};
