@@ -151,7 +151,7 @@ fn lme_figure_3() {
 fn plain_residuals(gamma: f64, x: f64) -> Vec<f64> {
     let xi: Vec<_> = (-8..=8).map(|I| Vector1::new(x - f64::from(I))).collect();
     let mut residuals = Vec::new();
-    let _ = plain::newton(&mut residuals, &xi, gamma);
+    let _ = plain::solve(&mut residuals, &xi, gamma);
     residuals
 }
 
@@ -218,7 +218,7 @@ fn beside_plain<const D: usize>(set: &str, gamma: f64) -> Beside {
         let s = SVector::<f64, D>::from_fn(|d, _| (f64::from(n) * irrational[d]).fract());
         let x = (s * 0.9 + SVector::repeat(0.05)).component_mul(top);
         let xi: Vec<_> = nodes.iter().map(|x_I| (x - x_I) / h).collect();
-        let Ok(plain) = plain::newton(&mut Vec::new(), &xi, gamma) else {
+        let Ok(plain) = plain::solve(&mut Vec::new(), &xi, gamma) else {
             continue;
         };
         beside.served += 1;
@@ -274,7 +274,7 @@ fn lme_plain_newton_fails_on_the_hull() {
     for gamma in [0.1, 0.8, 1.8, 4.0] {
         let (mut residuals, x) = (Vec::new(), nodes[0]);
         let xi: Vec<_> = nodes.iter().map(|x_I| x - x_I).collect();
-        let plain = plain::newton(&mut residuals, &xi, gamma).unwrap();
+        let plain = plain::solve(&mut residuals, &xi, gamma).unwrap();
         assert!(residuals.len() > 30, "γ = {gamma}: {residuals:?}");
         let (values, _) = lme_at(&nodes, 1.0, gamma, 0.0, &x).unwrap();
         for (I, N, grad) in values {

@@ -66,7 +66,6 @@ pub fn fill_from_nodes<const D: usize>(
     shape.count();
     Ok(())
 }
-// ANCHOR_END: scattered
 
 /// Writes the row of one particle: the search widens until its nodes enclose it.
 fn row_among_nodes<const D: usize>(
@@ -77,14 +76,14 @@ fn row_among_nodes<const D: usize>(
     nodes: Places<D>,
     x_p: &SVector<f64, D>,
 ) -> Result<(), Failure> {
-    let Scratch { lme, seen, bins, cost } = scratch;
+    let Scratch { lme, bins, cost } = scratch;
     let place = x_p.component_div(nodes.h);
     let mut widenings = 0;
     *lambda = loop {
         let near = bins.near(&place, reach);
-        see(lme, seen, nodes, x_p, reach, near.inspect(|_| cost.candidates += 1));
+        see(lme, nodes, x_p, reach, near.inspect(|_| cost.candidates += 1));
         match max_ent_row(shape, lme, gamma, nodes.h, [*lambda, SVector::zeros()]) {
-            Err(_) if widenings < WIDENINGS && seen.len() < nodes.x.len() => {
+            Err(_) if widenings < WIDENINGS && lme.nodes() < nodes.x.len() => {
                 widenings += 1;
                 reach *= WIDER;
             }
@@ -93,41 +92,37 @@ fn row_among_nodes<const D: usize>(
     };
     Ok(())
 }
+// ANCHOR_END: scattered
 
-/// Lists in `seen` those of the nodes `near` that are within `reach` = R/h of x, and shows
-/// them to `lme`, with offsets from the nearest.
+/// Shows to `lme` those of the nodes `near` that are within `reach` = R/h of x, with offsets
+/// from the nearest.
 fn see<const D: usize>(
     lme: &mut Lme<D>,
-    seen: &mut Vec<usize>,
     Places { x: nodes, h }: Places<D>,
     x: &SVector<f64, D>,
     reach: f64,
     near: impl Iterator<Item = usize>,
 ) {
-    seen.clear();
+    lme.clear(false);
     let (mut nearest, mut least) = (0, f64::INFINITY);
     for a in near {
         let xi = (x - nodes[a]).component_div(h);
         let square = xi.dot(&xi);
         if square <= reach * reach {
-            seen.push(a);
+            lme.push(a, xi, SVector::zeros());
             if square < least {
                 (nearest, least) = (a, square);
             }
         }
     }
-    lme.clear(false);
-    for &a in seen.iter() {
-        let offset = (nodes[nearest] - nodes[a]).component_div(h);
-        lme.push(a, (x - nodes[a]).component_div(h), offset);
-    }
+    lme.set_offsets(|a| (nodes[nearest] - nodes[a]).component_div(h));
 }
 
 /// What a point sees: node, N (–) and ∇N (1/m).
 pub type Values<const D: usize> = Vec<(usize, f64, SVector<f64, D>)>;
 
-/// N and ∇N of one point among a list of nodes: those within R of x, as (node, N, ∇N), and
-/// λ (1/m).
+/// Evaluates local max-ent at one point among a list of nodes: those within R of x, as
+/// (node, N, ∇N), and λ (1/m).
 ///
 /// `spacing` is the h (m) of γ = βh². Errors: [`Failure`].
 pub fn values_at<const D: usize>(
@@ -143,7 +138,7 @@ pub fn values_at<const D: usize>(
     let (mut lme, mut shape) = (Lme::default(), Shape::blank(0));
     let h = &SVector::repeat(spacing);
     let places = Places { x: nodes, h };
-    see(&mut lme, &mut Vec::new(), places, x, radius(gamma, cutoff), 0..nodes.len());
+    see(&mut lme, places, x, radius(gamma, cutoff), 0..nodes.len());
     let lambda = max_ent_row(&mut shape, &mut lme, gamma, h, [SVector::zeros()])?;
     shape.end_row();
     Ok((shape.of(0).map(|(I, N, grad)| (I, N, *grad)).collect(), lambda / spacing))

@@ -8,8 +8,6 @@ use crate::method::cost::Cost;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scratch<const D: usize> {
     pub(super) lme: Lme<D>,
-    /// The scattered nodes that the point at hand sees.
-    pub(super) seen: Vec<usize>,
     /// Nodes that move, sorted for the search.
     pub(super) bins: Bins<D>,
     /// Candidates looked at so far.

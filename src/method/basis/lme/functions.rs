@@ -63,9 +63,10 @@ pub fn evaluate<const D: usize>(
 
 /// Gives the node on which x lies its weight, and returns S.
 ///
-/// The exponent of that node is 0, so exp of it is 1. With S, the sum of exp f_I over the
-/// others, its weight is 1/(1 + S), and theirs, which added up to 1, add up to S/(1 + S).
-/// The gradients of the others stay: both p_I and J become smaller by the same factor.
+/// The exponent of that node is 0, its exponential is 1. With S, the sum of the other
+/// nodes' exponentials, its weight is 1/(1 + S); the weights of the others, which have added
+/// up to 1, now add up to S/(1 + S). Their gradients stay as they are, since p_I and J
+/// become smaller by the same factor.
 fn weigh_node<const D: usize>(
     functions: &mut Functions<D>,
     seen: &Seen<D>,

@@ -63,6 +63,18 @@ impl<const D: usize> Lme<D> {
         self.seen.offset.push(offset);
     }
 
+    /// Sets the offset of every node I, where b is known only when all of them are.
+    pub fn set_offsets(&mut self, offset: impl Fn(usize) -> SVector<f64, D>) {
+        for (I, of_I) in self.seen.I.iter().zip(&mut self.seen.offset) {
+            *of_I = offset(*I);
+        }
+    }
+
+    /// The number of nodes that the point sees.
+    pub fn nodes(&self) -> usize {
+        self.seen.I.len()
+    }
+
     /// The exponentials and Newton iterations so far.
     pub fn cost(&self) -> Cost {
         self.weights.cost + self.functions.cost
@@ -87,7 +99,7 @@ pub fn max_ent_row<const D: usize>(
 ) -> Result<SVector<f64, D>, Failure> {
     let Lme { seen, weights, functions } = lme;
     seen::share(seen)?;
-    let lambda = search::search(weights, seen, gamma, starts)?;
+    let lambda = search::find_lambda(weights, seen, gamma, starts)?;
     functions::evaluate(functions, seen, weights, gamma, &lambda)?;
     for ((I, N_I), grad) in seen.I.iter().zip(&functions.p).zip(&functions.grad) {
         shape.push(*I, *N_I, grad.component_div(h));

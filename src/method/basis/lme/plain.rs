@@ -4,7 +4,7 @@ use super::failure::Failure;
 use nalgebra::{SMatrix, SVector};
 
 /// Steps after which Newton's method is given up.
-pub const MOST_STEPS: usize = 40;
+const MOST_STEPS: usize = 40;
 
 /// |r| below which λ is found: some ten times what rounding leaves of it.
 const SMALL: f64 = 1e-15;
@@ -29,7 +29,7 @@ pub struct Solution<const D: usize> {
 ///
 /// Errors: [`Failure::OutsideHull`] where J has no inverse, [`Failure::NotConverged`].
 /// Tests: `tests/lme.rs`.
-pub fn newton<const D: usize>(
+pub fn solve<const D: usize>(
     residuals: &mut Vec<f64>,
     xi: &[SVector<f64, D>],
     gamma: f64,

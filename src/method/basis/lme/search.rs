@@ -21,7 +21,7 @@ const NEAR: f64 = 0.5;
 /// grows in proportion, up to logarithms, so each solution starts the next well.
 ///
 /// Errors: [`Failure::OutsideHull`], [`Failure::NotConverged`].
-pub fn search<const D: usize>(
+pub fn find_lambda<const D: usize>(
     weights: &mut Weights,
     seen: &Seen<D>,
     gamma: f64,
