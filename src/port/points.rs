@@ -1,7 +1,7 @@
 //! CSV of points in, CSV of values out: the commands `exact` and `shape`.
 
 use super::rows::{self, Rows};
-use crate::method::basis::support::{self, Values};
+use crate::method::basis::scattered::{Values, values_at};
 use crate::method::basis::{self, Basis, Scratch};
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
@@ -149,7 +149,7 @@ fn shape_in<const D: usize>(
     let mut rows = Vec::new();
     for (n, x) in points.vectors::<D>().iter().enumerate() {
         let values = match (basis, &grid) {
-            (Basis::Lme { gamma, cutoff }, _) => support::at(&place, spacing, *gamma, *cutoff, x)
+            (Basis::Lme { gamma, cutoff }, _) => values_at(&place, spacing, *gamma, *cutoff, x)
                 .map(|(values, _)| values)
                 .map_err(|failure| {
                     let allowed =
