@@ -2,7 +2,8 @@
 //! holds without it, and a line of help. Reading, refusing, the JSON Schema and the book's
 //! scene reference all ask this table.
 
-use super::kind::{Kind, Number, any, between, plain, positive, whole};
+use super::kind::Kind::{self, *};
+use super::kind::{Number, any, between, plain, positive, whole};
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
 /// One key.
@@ -68,172 +69,163 @@ const RAMP: Number = Number { least: Included(0.0), ..any("s") };
 
 /// All keys, in the order in which a scene is read aloud.
 pub const KEYS: &[Key] = &[
-    must("title", Kind::Text, "What summary and pictures are headed with"),
-    must("method", Kind::Choice(&["mpm", "otm"]), "Particles on a grid, or on nodes that move"),
-    must("mass", Kind::Choice(&["lumped", "consistent"]), "The mass matrix of the nodes"),
-    must("body", Kind::Table, "A box of linear elastic material"),
-    must("body.length", Kind::PerAxis(positive("m")), "The size of the box, L in 1D")
+    must("title", Text, "What summary and pictures are headed with"),
+    must("method", Choice(&["mpm", "otm"]), "Particles on a grid, or on nodes that move"),
+    must("mass", Choice(&["lumped", "consistent"]), "The mass matrix of the nodes"),
+    must("body", Table, "A box of linear elastic material"),
+    must("body.length", PerAxis(positive("m")), "The size of the box, L in 1D")
         .besides("their number is the dimension, 1 to 3"),
-    may("body.origin", Kind::PerAxis(any("m")), Without::Number(0.0), "Its lower corner"),
-    must("body.density", Kind::One(positive("kg/m³")), "ρ at the start"),
-    must("body.youngs_modulus", Kind::One(positive("Pa")), "E"),
-    must("body.poisson_ratio", Kind::One(between(Excluded(-1.0), Excluded(0.5))), "ν"),
-    may("body.ball", Kind::List, Without::Says("all of the box"), "Discs or balls of material")
+    may("body.origin", PerAxis(any("m")), Without::Number(0.0), "Its lower corner"),
+    must("body.density", One(positive("kg/m³")), "ρ at the start"),
+    must("body.youngs_modulus", One(positive("Pa")), "E, Young's modulus"),
+    must("body.poisson_ratio", One(between(Excluded(-1.0), Excluded(0.5))), "ν, Poisson's ratio"),
+    may("body.ball", List, Without::Says("all of the box"), "Discs or balls of material")
         .besides("in 2D and 3D, each with a particle in it"),
-    must("body.ball.centre", Kind::PerAxis(any("m")), "The middle of a ball")
+    must("body.ball.centre", PerAxis(any("m")), "The middle of a ball")
         .besides("a point of the body's box"),
-    must("body.ball.radius", Kind::One(positive("m")), "The radius of a ball")
+    must("body.ball.radius", One(positive("m")), "The radius of a ball")
         .besides("it keeps the ball inside the body's box"),
-    must("grid", Kind::Table, "Cells and particles"),
-    must("grid.cells", Kind::PerAxis(FROM_1), "Cells over the length of the body"),
+    must("grid", Table, "Cells and particles"),
+    must("grid.cells", PerAxis(FROM_1), "Cells over the length of the body"),
     must(
         "grid.particles_per_cell",
-        Kind::PerAxis(whole(1.0, Included(64.0))),
+        PerAxis(whole(1.0, Included(64.0))),
         "Particles of a cell along each axis",
     )
-    .besides("with the method \"otm\" to 4"),
-    may("grid.beyond", Kind::Table, Without::Says("as below"), "Cells beyond the body")
+    .besides("with the method \"otm\" at most 4"),
+    may("grid.beyond", Table, Without::Says("as below"), "Cells beyond the body")
         .besides("not with the method \"otm\""),
     may(
         "grid.beyond.<side>",
-        Kind::One(whole(0.0, Unbounded)),
+        One(whole(0.0, Unbounded)),
         Without::Says("0 beyond a fixed side, 1 beyond a free one and for uGIMP"),
         "Cells beyond this side",
     ),
-    must("basis", Kind::Table, "The shape functions"),
+    must("basis", Table, "The shape functions"),
     must(
         "basis.kind",
-        Kind::Choice(&["linear", "ugimp", "lme", "bspline"]),
+        Choice(&["linear", "ugimp", "lme", "bspline"]),
         "Linear, uGIMP, local max-ent, quadratic B-splines",
     )
     .besides("with the method \"otm\" \"lme\", in 1D also \"linear\""),
-    must("basis.gamma", Kind::One(between(Included(1e-6), Included(1e6))), "γ = βh²")
+    must("basis.gamma", One(between(Included(1e-6), Included(1e6))), "γ = βh²")
         .with("basis.kind", "lme"),
     may(
         "basis.cutoff",
-        Kind::One(between(Included(0.0), Excluded(1.0))),
+        One(between(Included(0.0), Excluded(1.0))),
         Without::Number(1e-6),
         "Nodes with exp(−γ|ξ|²) below it are cut off",
     )
     .with("basis.kind", "lme"),
-    must("time", Kind::Table, "The scheme and its time step"),
+    must("time", Table, "The scheme and its time step"),
     must(
         "time.integrator",
-        Kind::Choice(&["newmark", "forward-euler", "corrected-euler", "generalized-alpha"]),
+        Choice(&["newmark", "forward-euler", "corrected-euler", "generalized-alpha"]),
         "The scheme that carries the particles through time",
     )
     .besides("with the method \"otm\" \"newmark\""),
     may(
         "time.reading",
-        Kind::Choice(&["second-order", "as-printed"]),
+        Choice(&["second-order", "as-printed"]),
         Without::Word("second-order"),
         "How step 8 is read",
     )
     .with("time.integrator", "newmark"),
     must(
         "time.stress_update",
-        Kind::Choice(&["first", "last", "modified-last"]),
+        Choice(&["first", "last", "modified-last"]),
         "When the stress is updated",
     )
     .with("time.integrator", "forward-euler"),
     must(
         "time.rho_b",
-        Kind::One(between(Included(0.0), Included(1.0))),
+        One(between(Included(0.0), Included(1.0))),
         "ρ_b, the spectral radius at the bifurcation",
     )
     .with("time.integrator", "generalized-alpha"),
     may(
         "time.cfl",
-        Kind::One(positive("")),
-        Without::Says("the next bounds it"),
+        One(positive("")),
+        Without::Says("time.fraction_of_critical bounds it"),
         "The largest c Δt / h",
     )
-    .besides("this key, or the next, or both"),
+    .besides("this key, time.fraction_of_critical, or both"),
     may(
         "time.fraction_of_critical",
-        Kind::One(positive("")),
-        Without::Says("the one before bounds it"),
+        One(positive("")),
+        Without::Says("time.cfl bounds it"),
         "The largest Δt, as a part of the limit that is predicted at the start",
     ),
     may(
         "time.allow_unstable",
-        Kind::Flag,
+        Flag,
         Without::Flag(false),
         "Run what the predicted limit says must blow up",
     ),
-    must("time.end", Kind::One(positive("s")), "The end of the run"),
-    may("boundary", Kind::Table, Without::Says("free sides"), "The sides of the box")
+    must("time.end", One(positive("s")), "The end of the run"),
+    may("boundary", Table, Without::Says("free sides"), "The sides of the box")
         .besides("left, right (x); bottom, top (y); back, front (z)"),
-    may(
-        "boundary.<side>",
-        Kind::ChoiceOrTable(STATES),
-        Without::Word("free"),
-        "What holds this side",
-    ),
+    may("boundary.<side>", ChoiceOrTable(STATES), Without::Word("free"), "What holds this side"),
     may(
         "boundary.<side>.<axis>",
-        Kind::Choice(STATES),
+        Choice(STATES),
         Without::Word("free"),
         "What holds this component of the velocity there",
     ),
-    may("initial_velocity", Kind::List, Without::Says("at rest"), "Regions that are thrown")
+    may("initial_velocity", List, Without::Says("at rest"), "Regions that are thrown")
         .besides("in place of vibration and manufactured"),
-    must("initial_velocity.from", Kind::PerAxis(any("m")), "The region's lower corner")
+    must("initial_velocity.from", PerAxis(any("m")), "The region's lower corner")
         .besides("inside the body"),
-    must("initial_velocity.to", Kind::PerAxis(any("m")), "The region's upper corner")
+    must("initial_velocity.to", PerAxis(any("m")), "The region's upper corner")
         .besides("above `from`, inside the body, with a particle in between"),
-    must("initial_velocity.velocity", Kind::PerAxis(any("m/s")), "The velocity there"),
-    may("vibration", Kind::Table, Without::Says("no mode"), "A natural mode: v = V φ(x)")
+    must("initial_velocity.velocity", PerAxis(any("m/s")), "The velocity there"),
+    may("vibration", Table, Without::Says("no mode"), "A natural mode: v = V φ(x)")
         .besides("in 1D, in place of initial_velocity and manufactured"),
-    must("vibration.mode", Kind::One(MODE), "Its number").besides("at most half of the particles"),
-    must("vibration.velocity", Kind::One(any("m/s")), "V"),
+    must("vibration.mode", One(MODE), "The number of the mode")
+        .besides("at most half of the particles"),
+    must("vibration.velocity", One(any("m/s")), "V, the largest velocity"),
     may(
         "manufactured",
-        Kind::Table,
+        Table,
         Without::Says("no such motion"),
         "u = A φ(X) sin ωt, kept by a body force",
     )
     .besides("in 1D, in place of initial_velocity and vibration"),
-    must("manufactured.mode", Kind::One(MODE), "The number of its mode")
+    must("manufactured.mode", One(MODE), "The number of the mode")
         .besides("at most half of the particles"),
-    must("manufactured.amplitude", Kind::One(any("m")), "A")
+    must("manufactured.amplitude", One(any("m")), "A, the largest displacement")
         .besides("|A| k < 1, so that no material turns inside out"),
-    may("body_force", Kind::Table, Without::Says("none"), "A force per mass, everywhere the same")
+    may("body_force", Table, Without::Says("none"), "A force per mass, everywhere the same")
         .besides("not with manufactured"),
-    must("body_force.acceleration", Kind::PerAxis(any("m/s²")), "b"),
-    may("body_force.ramp", Kind::One(RAMP), Without::Number(0.0), "The time over which it grows"),
-    may("traction", Kind::Table, Without::Says("none"), "Forces on the sides of the box")
+    must("body_force.acceleration", PerAxis(any("m/s²")), "b, the acceleration"),
+    may("body_force.ramp", One(RAMP), Without::Number(0.0), "The time over which it grows"),
+    may("traction", Table, Without::Says("none"), "Forces on the sides of the box")
         .besides("not with manufactured or balls"),
     may(
         "traction.<side>",
-        Kind::PerAxis(any("Pa")),
+        PerAxis(any("Pa")),
         Without::Says("none on this side"),
         "The traction on this side",
     )
     .besides("0 where the side is fixed"),
-    may("traction.ramp", Kind::One(RAMP), Without::Number(0.0), "The time over which they grow"),
-    may("probe", Kind::List, Without::Says("none"), "Particles whose history is recorded"),
-    must("probe.name", Kind::Name(TAKEN), "The name of its column and picture")
-        .besides("used once"),
-    must(
-        "probe.quantity",
-        Kind::Choice(&["velocity", "stress", "displacement"]),
-        "What is recorded",
-    ),
+    may("traction.ramp", One(RAMP), Without::Number(0.0), "The time over which they grow"),
+    may("probe", List, Without::Says("none"), "Particles whose history is recorded"),
+    must("probe.name", Name(TAKEN), "The name of its column and picture").besides("used once"),
+    must("probe.quantity", Choice(&["velocity", "stress", "displacement"]), "What is recorded"),
     may(
         "probe.component",
-        Kind::Choice(COMPONENTS),
+        Choice(COMPONENTS),
         Without::Says("in 1D the only one"),
         "Which component",
     )
     .besides("two letters for a stress, one otherwise; 2D and 3D need it"),
-    must("probe.position", Kind::PerAxis(any("m")), "The particle nearest to it is followed")
+    must("probe.position", PerAxis(any("m")), "The particle nearest to it is followed")
         .besides("a point of the body"),
-    may("output", Kind::Table, Without::Says("as below"), "What is recorded"),
-    may("output.every", Kind::One(FROM_1), Without::Number(1.0), "Record every so many steps"),
+    may("output", Table, Without::Says("as below"), "What is recorded"),
+    may("output.every", One(FROM_1), Without::Number(1.0), "Record every so many steps"),
     may(
         "output.vtk",
-        Kind::Flag,
+        Flag,
         Without::Flag(false),
         "Write the particles of every recorded step for ParaView",
     )
@@ -266,7 +258,7 @@ impl Key {
     }
 
     /// What holds without it, in words.
-    pub fn default_words(&self) -> String {
+    pub fn without_words(&self) -> String {
         match self.without {
             Without::Refused if self.with.is_some() => "needed there".into(),
             Without::Refused => "needed".into(),

@@ -114,16 +114,10 @@ impl Kind {
                 None => Ok(Value::Word(text.to_string())),
                 Some(bad) => Err(wrong(&format!("it holds the control character {bad:?}"))),
             },
-            (Kind::Name(taken), DeValue::String(name)) => {
-                let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
-                if !((1..=64).contains(&name.len()) && name.chars().all(plain)) {
-                    return Err(wrong(&format!("\"{name}\" cannot name a column and a file")));
-                }
-                if is_taken(name, taken) {
-                    return Err(wrong(&format!("\"{name}\" is taken")));
-                }
-                Ok(Value::Word(name.to_string()))
-            }
+            (Kind::Name(taken), DeValue::String(name)) => match unfit(name, taken) {
+                None => Ok(Value::Word(name.to_string())),
+                Some(problem) => Err(wrong(&format!("\"{name}\" {problem}"))),
+            },
             (Kind::Choice(words) | Kind::ChoiceOrTable(words), DeValue::String(word)) => {
                 if words.contains(&word.as_ref()) {
                     return Ok(Value::Word(word.to_string()));
@@ -171,7 +165,11 @@ impl Number {
             (Unbounded, Included(_)) => " up".into(),
             (Unbounded, _) => String::new(),
         };
-        let unit = if self.unit.is_empty() { String::new() } else { format!(", in {}", self.unit) };
+        let comma = if least.is_empty() { "" } else { "," };
+        let unit = match self.unit {
+            "" => String::new(),
+            unit => format!("{comma} in {unit}"),
+        };
         format!("{}{least}{most}{unit}", self.noun())
     }
 
@@ -214,10 +212,15 @@ impl Wrong {
     }
 }
 
-/// True for the name of a column or file that a run has already. Files on some systems do
-/// not tell upper from lower case.
-fn is_taken(name: &str, taken: &[&str]) -> bool {
-    name.ends_with("_exact") || taken.iter().any(|taken| taken.eq_ignore_ascii_case(name))
+/// Why no column and file of a run can have this name, if so.
+fn unfit(name: &str, taken: &[&str]) -> Option<&'static str> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    if !((1..=64).contains(&name.len()) && name.chars().all(plain)) {
+        return Some("cannot name a column and a file");
+    }
+    // Files on some systems do not tell upper from lower case.
+    let name = name.to_ascii_lowercase();
+    (taken.contains(&name.as_str()) || name.ends_with("_exact")).then_some("is taken")
 }
 
 fn out_of_range(entry: &Spanned<DeValue>, text: &str) -> Wrong {

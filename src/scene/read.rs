@@ -54,11 +54,6 @@ pub fn declare(
 }
 
 fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
-    let dimension = values.dimension();
-    if !(1..=3).contains(&dimension) {
-        let problem = format!("{} given", counted(dimension, "number"));
-        return Err(values.error("body.length", problem));
-    }
     let is_otm = values.choose("method", &[("mpm", false), ("otm", true)])?;
     let masses = [("lumped", Mass::Lumped), ("consistent", Mass::Consistent)];
     let mass = values.choose("mass", &masses)?;
@@ -77,10 +72,6 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
     let body_force = body_force(values)?;
     let traction = traction(values, &boundary)?;
     let probes = probes(values, &body)?;
-    let vtk = values.flag("output.vtk")?;
-    if vtk && dimension == 1 {
-        return Err(values.error("output.vtk", "it means nothing in 1D"));
-    }
     Ok(Scene {
         name: name.to_string(),
         title: values.word("title")?.to_string(),
@@ -96,11 +87,24 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         traction,
         probes,
         every: values.whole("output.every")?,
-        vtk,
+        vtk: vtk(values)?,
     })
 }
 
+fn vtk(values: &Values) -> Result<bool, Box<SceneError>> {
+    match values.flag("output.vtk")? {
+        true if values.dimension() == 1 => {
+            Err(values.error("output.vtk", "it means nothing in 1D"))
+        }
+        vtk => Ok(vtk),
+    }
+}
+
 fn body(values: &Values) -> Result<Body, Box<SceneError>> {
+    if !(1..=3).contains(&values.dimension()) {
+        let problem = format!("{} given", counted(values.dimension(), "number"));
+        return Err(values.error("body.length", problem));
+    }
     let body = Body {
         length: values.axes("body.length")?,
         origin: values.axes("body.origin")?,

@@ -242,9 +242,7 @@ fn read_table(
         let path = join(parent, name.get_ref());
         // A name in quotes may hold what a path is made of.
         let key = keys::find(&path).filter(|_| !name.get_ref().contains(['.', '[', ']']));
-        let Some(key) = key else {
-            return Err(unknown(source, parent, name.get_ref(), name.span()));
-        };
+        let key = key.ok_or_else(|| unknown(source, parent, name.get_ref(), name.span()))?;
         let checked = key.kind.read(value).map_err(|wrong| {
             let mut error = source.error(&path, wrong.span, wrong.problem);
             error.suggestion = wrong.suggestion;
