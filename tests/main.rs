@@ -20,6 +20,7 @@ mod otm;
 mod port;
 mod refusals;
 mod regression;
+mod scenes;
 mod search;
 mod stability;
 mod steps;
