@@ -35,10 +35,7 @@ impl<const D: usize> Model<D> {
     /// Counts the bytes of state that one particle carries in this model.
     pub fn bytes_per_particle(&self) -> usize {
         let (vector, matrix) = (size_of::<SVector<f64, D>>(), size_of::<SMatrix<f64, D, D>>());
-        let of_basis = match self.basis {
-            Basis::Lme { .. } => vector, // λ_p
-            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline => 0,
-        };
+        let of_basis = if self.basis.has_multiplier() { vector } else { 0 };
         let of_method = match self.method {
             Method::Mpm(Integrator::GeneralizedAlpha { .. }) => vector, // a_p
             Method::Mpm(_) => 0,
@@ -85,7 +82,7 @@ impl<const D: usize> State<D> {
                 node.x = x;
             }
         }
-        if let Basis::Lme { .. } = model.basis {
+        if model.basis.has_multiplier() {
             particle.lambda = zeros(particles);
         }
         let mass = match model.mass {

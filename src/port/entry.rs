@@ -1,6 +1,5 @@
 //! What a trace is made of: entries, their symbols, and their form as CSV.
 
-use crate::method::basis::Basis;
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::Nodes;
@@ -119,10 +118,10 @@ impl TraceRecorder {
         match symbol {
             "N_Ip" => self.shapes(shape),
             "grad_N_Ip" => self.gradients(shape),
-            "lambda" => match model.basis {
-                Basis::Lme { .. } => self.multipliers(&particle.lambda, &model.grid.h),
-                Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline => {}
-            },
+            "lambda" if model.basis.has_multiplier() => {
+                self.multipliers(&particle.lambda, &model.grid.h);
+            }
+            "lambda" => {}
             "m_I" => self.numbers(symbol, &node.m),
             "p_I" | "p_I_advanced" => self.vectors(symbol, &node.p),
             "v_I" => self.vectors(symbol, &node.v),

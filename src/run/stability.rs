@@ -12,7 +12,6 @@
 //! g(s) = 2p/l with l = 1 − α_m − α_m s and
 //! p = (1 + s)(β − γs/2) − s(1 − s)/2. OTM maps nothing: g = 1.
 
-use crate::method::basis::Basis;
 use crate::method::breakdown::Breakdown;
 use crate::method::choice::{Integrator, Method};
 use crate::method::continuum::law::symmetric_part;
@@ -329,8 +328,8 @@ fn predicted_in<const D: usize>(scene: &Scene, offset: f64) -> Result<f64, Break
 fn shifts<const D: usize>(scene: &Scene, model: &Model<D>, offset: f64) -> Vec<SVector<f64, D>> {
     let per_cell = |d: usize| scene.grid.particles_per_cell[d] as f64;
     let shift: SVector<f64, D> = SVector::from_fn(|d, _| offset * model.grid.h[d] / per_cell(d));
-    match (model.method, model.basis) {
-        (Method::Mpm(_), Basis::Ugimp { .. } | Basis::BSpline) => {
+    match model.method {
+        Method::Mpm(_) if model.basis.switches_nodes_on() => {
             [0.0, -TOUCH, TOUCH].map(|side| shift + model.grid.h * side).to_vec()
         }
         _ => vec![shift],
