@@ -33,8 +33,7 @@ impl Basis {
     }
 
     /// Says whether a node that a particle has just touched counts at once, however small
-    /// its mass. With the linear basis the limit of Δt falls without a jump; the cut-off of
-    /// local max-ent is not touched in practice.
+    /// its mass, so that the limit of Δt is also taken with all particles moved by a touch.
     pub fn switches_nodes_on(&self) -> bool {
         match self {
             Basis::Ugimp { .. } | Basis::BSpline => true,
