@@ -72,9 +72,8 @@ pub fn run_into(
     };
     let mut lines = summary::lines(scene, &outcome, start.elapsed().as_secs_f64());
     if let Some(limit) = limit.map(|limit| limit.min(f64::MAX)) {
-        let line = |quantity: &str, value, unit| Line { quantity: quantity.into(), value, unit };
-        lines.push(line("critical_time_step", limit, "s"));
-        lines.push(line("fraction_of_critical", outcome.dt / limit, "1"));
+        lines.push(Line::new("critical_time_step", limit, "s"));
+        lines.push(Line::new("fraction_of_critical", outcome.dt / limit, "1"));
     }
     let cost = summary::cost_lines(&outcome.cost);
     let mut files = vec![

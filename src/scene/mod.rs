@@ -19,6 +19,7 @@ mod source;
 pub use parts::*;
 pub use read::{Declared, declare};
 pub use sizes::wave_speed;
+pub use source::merged;
 
 /// The Dyka & Ingel bar, which ships inside the program.
 pub const DYKA: &str = include_str!("../../data/scenes/dyka.toml");

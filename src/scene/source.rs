@@ -15,6 +15,14 @@ struct Piece {
     start: usize,
 }
 
+/// The table of a scene with the `sets` merged in: known keys, none missing, values not
+/// checked.
+///
+/// Errors: [`SceneError`] with file, line, key and what is allowed.
+pub fn merged(path: &str, text: &str, sets: &[String]) -> Result<toml::Table, Box<SceneError>> {
+    Ok(Source::new(path, text, sets).read()?.0)
+}
+
 /// A scene's text: the file first, then one piece for each `--set`.
 ///
 /// Every piece is parsed as if it followed the pieces before it, so that one
@@ -24,7 +32,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// The pieces of a scene; `sets` are the arguments `KEY=VALUE` of `--set`.
+    /// The pieces of a scene; `sets` are the arguments of `--set`: `KEY=VALUE` gives a
+    /// value, `KEY=` takes it out.
     pub fn new(path: &str, text: &str, sets: &[String]) -> Self {
         let mut source = Source { pieces: Vec::new() };
         source.add(path.to_string(), text.to_string());
@@ -77,6 +86,10 @@ impl Source {
         }
         let mut merged: Option<Spanned<DeTable<'_>>> = None;
         for (text, piece) in padded.iter().zip(&self.pieces) {
+            if let (Some(merged), Some(key)) = (&mut merged, piece.text.strip_suffix('=')) {
+                self.take_out(merged.get_mut(), key, piece.start)?;
+                continue;
+            }
             let table = DeTable::parse(text).map_err(|error| {
                 let mut error = self.error(
                     "",
@@ -117,6 +130,30 @@ impl Source {
                 Err(self.error(spans.key_at(span.start), span, plain))
             }
         }
+    }
+
+    /// Takes the value of `key`, whose name stands at `start`, out of the table; one that
+    /// is not there is no error, one that no scene can have is.
+    fn take_out(
+        &self,
+        table: &mut DeTable<'_>,
+        key: &str,
+        start: usize,
+    ) -> Result<(), Box<SceneError>> {
+        if keys::find(key).is_none() {
+            let mut error = self.error(key, start..start + key.len(), "this key is not known");
+            error.suggestion = keys::nearest(key, KEYS.iter().map(|key| key.path));
+            return Err(error);
+        }
+        let (mut table, mut rest) = (table, key);
+        while let Some((parent, inside)) = rest.split_once('.') {
+            match table.get_mut(parent).map(Spanned::get_mut) {
+                Some(DeValue::Table(inner)) => (table, rest) = (inner, inside),
+                _ => return Ok(()),
+            }
+        }
+        table.remove(rest);
+        Ok(())
     }
 
     fn merge_table<'i>(

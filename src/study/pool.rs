@@ -41,3 +41,22 @@ pub fn run<T: Sync, R: Send, E>(
         outcome
     })
 }
+
+/// `work` on every item, by `jobs` threads, in the order of the items; `progress` hears of
+/// every one that is done.
+pub fn all<T: Sync, R: Send>(
+    items: &[T],
+    jobs: usize,
+    work: impl Fn(&T) -> R + Sync,
+    progress: &mut dyn FnMut(),
+) -> Vec<R> {
+    let mut results: Vec<(usize, R)> = Vec::new();
+    let done: Result<(), std::convert::Infallible> = run(items, jobs, work, |n, result| {
+        results.push((n, result));
+        progress();
+        Ok(())
+    });
+    let Ok(()) = done;
+    results.sort_by_key(|(n, _)| *n);
+    results.into_iter().map(|(_, result)| result).collect()
+}
