@@ -1,5 +1,6 @@
 //! The program as a user meets it: what every command prints and writes.
 
+use crate::support::dyka;
 use crate::support::program::*;
 use std::fs;
 
@@ -76,6 +77,19 @@ fn run_set_changes_the_scene() {
     let history = fs::read_to_string(dir.join("here/history.csv")).unwrap();
     assert_eq!(history.lines().count(), 1 + 17);
     assert!(history.contains(",tip,tip_exact,"));
+}
+
+/// `--set KEY=` takes a value out, or a whole table; one that is not there stays away, and
+/// what is set later counts.
+#[test]
+fn run_set_takes_values_out() {
+    assert_eq!(dyka(&["time.reading=as-printed", "time.reading="]), dyka(&[]));
+    assert_eq!(dyka(&["traction.ramp=", "body_force="]), dyka(&[]));
+    assert_eq!(dyka(&["boundary.left=", "boundary.left=fixed"]), dyka(&[]));
+    let free = dyka(&["boundary.left=free"]);
+    assert_ne!(free, dyka(&[]));
+    assert_eq!(dyka(&["boundary.left="]), free);
+    assert_eq!(dyka(&["boundary="]), free);
 }
 
 /// The free flight is free of stress, and keeps its velocity to the last bit.

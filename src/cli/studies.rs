@@ -92,7 +92,7 @@ fn list(template: &Template, arguments: &TradeArguments) -> Result<(), Fault> {
     print_bytes(lines.as_bytes())
 }
 
-/// Runs what the log in `dir` does not have yet.
+/// Runs what the log in `dir` does not have yet; rows in the order of the grid.
 fn tried(template: &Template, dir: &Path, full: bool, jobs: u16) -> Result<Vec<Tried>, Fault> {
     prepare(dir)?;
     let grid = trades::grid(template, full)?;
@@ -105,6 +105,7 @@ fn tried(template: &Template, dir: &Path, full: bool, jobs: u16) -> Result<Vec<T
     bar.finish_and_clear();
     let mut own = runs?;
     own.retain(|run| grid.contains(&run.configuration));
+    own.sort_by_cached_key(|run| grid.iter().position(|one| *one == run.configuration));
     Ok(ranking::summarise(&own))
 }
 
@@ -149,7 +150,7 @@ fn report(dir: &Path, rows: &[Tried]) -> String {
         }
     }
     let baseline = |row: &&Tried| row.configuration.is_finite_elements();
-    text += "\nTo compare, linear finite elements (errors of velocity, stress, displacement):\n";
+    text += "\nTo compare, linear finite elements (the three errors, time [ms]):\n";
     for Tried { configuration, measured, wall_time, .. } in rows.iter().filter(baseline) {
         if let Ok(found) = measured {
             let time = 1e3 * wall_time.median;

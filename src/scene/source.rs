@@ -140,8 +140,9 @@ impl Source {
         key: &str,
         start: usize,
     ) -> Result<(), Box<SceneError>> {
+        let span = start..start + key.len();
         if keys::find(key).is_none() {
-            let mut error = self.error(key, start..start + key.len(), "this key is not known");
+            let mut error = self.error(key, span, "this key is not known");
             error.suggestion = keys::nearest(key, KEYS.iter().map(|key| key.path));
             return Err(error);
         }
@@ -149,7 +150,11 @@ impl Source {
         while let Some((parent, inside)) = rest.split_once('.') {
             match table.get_mut(parent).map(Spanned::get_mut) {
                 Some(DeValue::Table(inner)) => (table, rest) = (inner, inside),
-                _ => return Ok(()),
+                Some(_) => {
+                    let problem = format!("`{parent}` is not a table here");
+                    return Err(self.error(key, span, problem));
+                }
+                None => return Ok(()),
             }
         }
         table.remove(rest);
