@@ -195,17 +195,20 @@ fn pool_keeps_the_order() {
     }
 }
 
+/// Linear finite elements, two configurations that run, and one beyond its limit.
 fn small_grid() -> Vec<Configuration> {
-    let newmark = "time.integrator=newmark grid.cells=10";
     [
-        format!("method=otm mass=lumped basis.kind=linear {newmark} grid.particles_per_cell=1 time.cfl=0.99"),
-        format!("method=mpm mass=lumped basis.kind=linear {newmark} grid.particles_per_cell=2 time.cfl=0.5"),
-        format!("method=mpm mass=lumped basis.kind=lme basis.gamma=0.8 {newmark} grid.particles_per_cell=2 time.cfl=0.5"),
-        // Beyond its limit.
-        "method=mpm mass=lumped basis.kind=ugimp time.integrator=generalized-alpha time.rho_b=0.5 \
-         grid.cells=10 grid.particles_per_cell=2 time.cfl=0.9".to_string(),
+        ("otm", "linear time.integrator=newmark", 1, 0.99),
+        ("mpm", "linear time.integrator=newmark", 2, 0.5),
+        ("mpm", "lme basis.gamma=0.8 time.integrator=newmark", 2, 0.5),
+        ("mpm", "ugimp time.integrator=generalized-alpha time.rho_b=0.5", 2, 0.9),
     ]
-    .map(|line| configuration(&line))
+    .map(|(method, parts, per_cell, cfl)| {
+        configuration(&format!(
+            "method={method} mass=lumped basis.kind={parts} grid.cells=10 \
+             grid.particles_per_cell={per_cell} time.cfl={cfl}"
+        ))
+    })
     .to_vec()
 }
 
@@ -294,16 +297,8 @@ fn trade_takes_the_median() {
 /// loads the balance of energy stands for its drift.
 #[test]
 fn trade_takes_all_probes_and_loads() {
-    let two = GRAVITY.replace(
-        "[[probe]]",
-        "[[probe]]\nname = \"displacement_middle\"\nquantity = \"displacement\"\nposition = 5\n\n[[probe]]",
-    );
-    let two = two.replacen(
-        "[[probe]]\nname = \"displacement_middle\"\nquantity = \"displacement\"\nposition = 5\n\n",
-        "",
-        1,
-    );
-    let template = Template::parse(Path::new("two.toml"), &two).unwrap();
+    let more = "[[probe]]\nname = 'displacement_middle'\nquantity = 'displacement'\nposition = 5\n";
+    let template = Template::parse(Path::new("two.toml"), &format!("{GRAVITY}\n{more}")).unwrap();
     let parts = "method=mpm mass=lumped basis.kind=linear time.integrator=newmark time.cfl=0.5";
     let one = configuration(&format!("{parts} {}", template.grid("mpm", 1.0, 2)));
     let measured = TimedRun::of(&template, &one, 1).measured.unwrap();

@@ -18,7 +18,7 @@ use lme_mpm::study::ranking::{self, LEVELS, Tried};
 use lme_mpm::study::trade as trades;
 use std::path::{Path, PathBuf};
 
-/// A bar for `length` pieces of work, on stderr.
+/// Shows a bar for `length` pieces of work, on stderr.
 fn progress(length: usize) -> ProgressBar {
     let bar = ProgressBar::new(length as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len}, {eta} left") {
@@ -27,7 +27,7 @@ fn progress(length: usize) -> ProgressBar {
     bar
 }
 
-/// The scene of a study; the built-in bar without one.
+/// Reads the scene of a study, which is the built-in bar if none is named.
 fn template(scene: Option<&Path>) -> Result<Template, Fault> {
     match scene {
         Some(path) => Template::parse(path, &files::text(path)?),
@@ -35,12 +35,12 @@ fn template(scene: Option<&Path>) -> Result<Template, Fault> {
     }
 }
 
-/// Without an exact solution there is no error to measure.
+/// Refuses a scene without an exact solution: there is no error to measure.
 fn comparable(template: &Template) -> Result<(), Fault> {
     setup::exact(&template.scene).map(|_| ())
 }
 
-/// `lme-mpm trade`.
+/// Does `lme-mpm trade`.
 pub fn trade(arguments: &TradeArguments) -> Result<(), Fault> {
     let template = template(arguments.scene.as_deref())?;
     if let Some(line) = &arguments.row {
@@ -109,7 +109,7 @@ fn tried(template: &Template, dir: &Path, full: bool, jobs: u16) -> Result<Vec<T
     Ok(ranking::summarise(&own))
 }
 
-/// Tables and diagrams.
+/// Writes tables and diagrams.
 fn write(dir: &Path, rows: &[Tried]) -> Result<(), Fault> {
     let mut files = vec![
         ("trade.csv".to_string(), ranking::table(rows)?),
@@ -134,7 +134,7 @@ fn write(dir: &Path, rows: &[Tried]) -> Result<(), Fault> {
     write_all(dir, &files, &[])
 }
 
-/// The cheapest by level, the baseline and what failed, for the terminal.
+/// Tells the terminal the cheapest by level, the baseline and what failed.
 fn report(dir: &Path, rows: &[Tried]) -> String {
     let mut text = format!("The cheapest of {} configurations by error:\n", rows.len());
     for criterion in Criterion::ALL {
@@ -171,7 +171,7 @@ fn report(dir: &Path, rows: &[Tried]) -> String {
     text + &format!("\nwritten to {}\n", dir.display())
 }
 
-/// `lme-mpm recommend`.
+/// Does `lme-mpm recommend`.
 pub fn recommend(
     scene: &Path,
     error: f64,
@@ -207,7 +207,7 @@ pub fn recommend(
     print_bytes(format!("{asked}:\n{}\n\n{evidence}\n{ready}\n", best.configuration).as_bytes())
 }
 
-/// The front, with a mark at the `best`.
+/// Tells the front, with a mark at the `best`.
 fn evidence(front: &[(&Tried, f64)], best: &Tried) -> String {
     let mut text =
         "  time [ms]     error configuration (on the front of time and error)\n".to_string();
@@ -219,7 +219,7 @@ fn evidence(front: &[(&Tried, f64)], best: &Tried) -> String {
     text
 }
 
-/// `lme-mpm gamma`.
+/// Does `lme-mpm gamma`.
 pub fn gamma(dir: &Path, jobs: u16) -> Result<(), Fault> {
     prepare(dir)?;
     let bar = progress(gammas::WAYS.len() * gammas::GAMMAS.len());
@@ -237,7 +237,7 @@ pub fn gamma(dir: &Path, jobs: u16) -> Result<(), Fault> {
     print_bytes(format!("written to {}\n", dir.display()).as_bytes())
 }
 
-/// `lme-mpm stability`.
+/// Does `lme-mpm stability`.
 pub fn stability(scene: Option<PathBuf>, dir: &Path, jobs: u16) -> Result<(), Fault> {
     let template = match &scene {
         Some(path) => template(Some(path))?,
@@ -255,7 +255,7 @@ pub fn stability(scene: Option<PathBuf>, dir: &Path, jobs: u16) -> Result<(), Fa
     print_bytes(limits(dir, &rows).as_bytes())
 }
 
-/// The map with two particles per cell and no offset, for the terminal.
+/// Tells the terminal the map with two particles per cell and no offset.
 fn limits(dir: &Path, rows: &[map::Mapped]) -> String {
     let mut table = comfy_table::Table::new();
     table.load_style(comfy_table::presets::NOTHING);

@@ -1,4 +1,4 @@
-//! Pictures as SVG: histories of probes, fronts of the exact solution, errors.
+//! Pictures are drawn as SVG: histories of probes, fronts of the exact solution, errors.
 
 use crate::method::basis::lme::Failure;
 use crate::method::basis::support;
@@ -9,20 +9,21 @@ use kuva::prelude::*;
 use nalgebra::Vector2;
 use std::sync::Arc;
 
-/// Width and height of a picture (px).
+/// A picture has this width and height (px).
 const SIZE: (f64, f64) = (860.0, 420.0);
 
-/// Colour-blind safe (Okabe & Ito 2008); the exact curve stands behind.
+/// The exact curve stands behind in grey; the colours are safe for the colour-blind (Okabe &
+/// Ito 2008).
 const EXACT: &str = "#999999";
 const COLOURS: [&str; 10] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#882255",
     "#999933", "#44aa99",
 ];
 
-/// The points of a curve.
+/// A curve has these points, from one end to the other.
 pub type CurvePoints = Vec<(f64, f64)>;
 
-/// One line of a picture.
+/// A curve is one line of a picture.
 struct Curve {
     points: CurvePoints,
     colour: &'static str,
@@ -31,7 +32,7 @@ struct Curve {
     legend: String,
 }
 
-/// What stands around the curves.
+/// The axes and the title stand around the curves.
 struct Axes {
     title: String,
     x_label: String,
@@ -50,8 +51,7 @@ impl Axes {
     }
 }
 
-/// The layout that all pictures share: a size (px), what stands around, ticks that read
-/// well.
+/// Gives the layout that all pictures share: a size (px), axes, ticks that read well.
 fn layout(plots: &[Plot], size: (f64, f64), axes: &Axes) -> Layout {
     let layout = Layout::auto_from_plots(plots)
         .with_width(size.0)
@@ -85,7 +85,7 @@ fn draw(curves: Vec<Curve>, axes: &Axes) -> String {
     own_ids(&render_to_svg(plots, layout))
 }
 
-/// The history of one probe, computed and, where known, exact.
+/// Draws the history of one probe, computed and, where known, exact.
 pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
     let column = |name: &str| history.column(name).unwrap_or_default();
     let (t, computed) = (column("t"), column(&probe.name));
@@ -117,7 +117,7 @@ pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
     draw(curves, &axes)
 }
 
-/// A quantity of the exact bar at the material point x over `transits` L/c:
+/// Draws a quantity of the exact bar at the material point x over `transits` L/c:
 /// the paper's Figs. 5 and 6. `value` gives the quantity at (x, t).
 pub fn exact_history(
     title: &str,
@@ -137,7 +137,7 @@ pub fn exact_history(
     draw(vec![Curve { points, colour: COLOURS[0], width: 2.0, legend: String::new() }], &axes)
 }
 
-/// The x-t diagram of a bar: every front from its source, from end to end, for
+/// Draws the x-t diagram of a bar: every front from its source, from end to end, for
 /// `transits` L/c, coloured by the invariant that carries it.
 pub fn fronts(bar: &Bar, transits: f64) -> String {
     let mut curves: Vec<Curve> = Vec::new();
@@ -167,7 +167,7 @@ pub fn fronts(bar: &Bar, transits: f64) -> String {
     draw(curves, &axes)
 }
 
-/// Errors against the number of cells, both on logarithmic axes; each list of
+/// Draws errors against the number of cells, both on logarithmic axes; each list of
 /// `(cells, error)` has its name.
 pub fn convergence(title: &str, lists: &[(&str, CurvePoints)]) -> String {
     let owned: Vec<(String, CurvePoints)> =
@@ -175,7 +175,7 @@ pub fn convergence(title: &str, lists: &[(&str, CurvePoints)]) -> String {
     log_curves(title, "cells [–]", "relative error [–]", &owned)
 }
 
-/// Curves with names, both axes logarithmic.
+/// Draws curves with names, both axes logarithmic.
 pub fn log_curves(
     title: &str,
     x_label: &str,
@@ -185,7 +185,7 @@ pub fn log_curves(
     named_curves(title, x_label, y_label, lists, true)
 }
 
-/// Curves with names on plain axes.
+/// Draws curves with names on plain axes.
 pub fn curves(
     title: &str,
     x_label: &str,
@@ -212,15 +212,15 @@ fn named_curves(
     draw(lists.iter().enumerate().map(curve).collect(), &axes)
 }
 
-/// A point of a work-precision diagram: what it took, its relative error, and the
-/// group that gives its colour; no error for a run that failed.
+/// An effort is a point of a work-precision diagram: what it took, its relative error, and
+/// the group that gives its colour; no error for a run that failed.
 pub struct Effort {
     pub work: f64,
     pub error: Option<f64>,
     pub group: String,
 }
 
-/// Error against work, both logarithmic: one colour for each group, the Pareto front
+/// Draws error against work, both logarithmic: one colour for each group, the Pareto front
 /// as a line, failed runs as crosses above all others.
 pub fn work_precision(
     title: &str,
@@ -256,8 +256,8 @@ pub fn work_precision(
     own_ids(&render_to_svg(plots, layout))
 }
 
-/// The groups in order of first appearance, each with the points of its runs that did not
-/// fail.
+/// Lists the groups in order of first appearance, each with the points of its runs that did
+/// not fail.
 fn groups(efforts: &[Effort]) -> Vec<(&str, CurvePoints)> {
     let mut groups: Vec<(&str, CurvePoints)> = Vec::new();
     for effort in efforts {
@@ -271,11 +271,12 @@ fn groups(efforts: &[Effort]) -> Vec<(&str, CurvePoints)> {
     groups
 }
 
-/// Points to a side of each map of [`local_max_ent`], and half of its width in cells.
+/// Each map of [`local_max_ent`] has as many points to a side, and this half of a width in
+/// cells.
 const PIXELS: usize = 25;
 const HALF_WIDTH: f64 = 2.5;
 
-/// The paper's Fig. 3: local max-ent in 2D for several γ. Above N of the middle
+/// Draws the paper's Fig. 3: local max-ent in 2D for several γ. Above N of the middle
 /// node, below ∂N/∂x, over a square of nodes with the spacing 1.
 ///
 /// Errors: [`Failure`], if a point cannot be served.
@@ -310,7 +311,7 @@ pub fn local_max_ent(gammas: &[f64]) -> Result<String, Failure> {
     Ok(own_ids(&kuva::backend::svg::SvgBackend.render_scene(&figure.render())))
 }
 
-/// N and ∂N/∂x of the middle one of 7 × 7 nodes, row by row from the top.
+/// Gives N and ∂N/∂x of the middle one of 7 × 7 nodes, row by row from the top.
 fn middle_function(gamma: f64) -> Result<[Vec<Vec<f64>>; 2], Failure> {
     const NODES: i32 = 3; // to each side of the middle
     let mut nodes = Vec::new();
@@ -335,14 +336,14 @@ fn middle_function(gamma: f64) -> Result<[Vec<Vec<f64>>; 2], Failure> {
     Ok(values)
 }
 
-/// The particles of a 2D scene, or of a 3D one seen along z, in six classes of
+/// Draws the particles of a 2D scene, or of a 3D one seen along z, in six classes of
 /// speed.
 pub fn particles(scene: &Scene, table: &Table, t: f64) -> String {
     let column = |name: &str| table.column(name).unwrap_or_default();
     let (x, y) = (column("position_x"), column("position_y"));
     let places: CurvePoints = x.iter().copied().zip(y.iter().copied()).collect();
     let plots = by_speed(&places, &speeds(table));
-    // The body's box, and whatever has left it.
+    // The picture shows the body's box, and whatever has left it.
     let range = |d: usize, list: &[f64]| {
         let (low, high) = (scene.body.origin[d], scene.body.origin[d] + scene.body.length[d]);
         (list.iter().fold(low, |a, b| a.min(*b)), list.iter().fold(high, |a, b| a.max(*b)))
@@ -364,14 +365,14 @@ pub fn particles(scene: &Scene, table: &Table, t: f64) -> String {
     own_ids(&render_to_svg(plots, layout))
 }
 
-/// |v| of every particle in a table (m/s).
+/// Gives |v| of every particle in a table (m/s).
 fn speeds(table: &Table) -> Vec<f64> {
     let axes = ["x", "y", "z"].map(|axis| table.column(&format!("velocity_{axis}")));
     let square = |p: usize| axes.iter().flatten().map(|v| v[p] * v[p]).sum();
     (0..table.rows().len()).map(|p| libm::sqrt(square(p))).collect()
 }
 
-/// Points in classes of their speed (m/s), the fastest first.
+/// Sorts points into classes of their speed (m/s), the fastest first.
 fn by_speed(places: &CurvePoints, speed: &[f64]) -> Vec<Plot> {
     const CLASSES: usize = 6;
     let top = largest(speed);
@@ -415,7 +416,7 @@ fn largest(list: &[f64]) -> f64 {
     list.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))
 }
 
-/// The SI prefix that brings `largest` between 1 and 1000, and its factor.
+/// Finds the SI prefix that brings `largest` between 1 and 1000, and its factor.
 fn prefix(largest: f64) -> (f64, &'static str) {
     const PREFIXES: [(f64, &str); 10] = [
         (1e-12, "T"),
@@ -433,7 +434,7 @@ fn prefix(largest: f64) -> (f64, &'static str) {
     PREFIXES.iter().find(fits).copied().unwrap_or((1.0, ""))
 }
 
-/// A tick label: up to six decimals, no trailing zeros; a power of ten where
+/// Writes a tick label: up to six decimals, no trailing zeros; a power of ten where
 /// that would show nothing.
 fn tick(x: f64) -> String {
     let size = libm::fabs(x);

@@ -1,4 +1,4 @@
-//! Files, each complete or not there.
+//! Files are complete or not there.
 
 use crate::run;
 use crate::scene::Scene;
@@ -6,7 +6,7 @@ use crate::scene::fault::Fault;
 use std::fs;
 use std::path::Path;
 
-/// The text of a file.
+/// Reads the text of a file.
 ///
 /// Errors: [`Fault::Read`] with the path.
 pub fn text(path: &Path) -> Result<String, Fault> {

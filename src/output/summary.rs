@@ -7,7 +7,7 @@ use crate::run::Outcome;
 use crate::scene::{Motion, Probe, Quantity, Scene, wave_speed};
 use crate::setup;
 
-/// One line of the summary.
+/// A line of the summary is a number with a name and a unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     pub quantity: String,
@@ -21,7 +21,7 @@ impl Line {
     }
 }
 
-/// The scales that make errors relative. For a body thrown at v0 they are those of
+/// These scales make errors relative. For a body thrown at v0 they are those of
 /// the bar: v0, the plateau Z v0/2, and v0 L/4c. For a mode they are V, Z V and V/ω
 /// with its largest speed V; for loads V, Z V and V L/c with V = b L/c + t/Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +68,7 @@ impl Scales {
         Scales { velocity, stress: rho * c * velocity, displacement }
     }
 
-    /// The scale of a quantity.
+    /// Picks the scale of a quantity.
     pub fn scale(&self, quantity: Quantity) -> f64 {
         match quantity {
             Quantity::Velocity(_) => self.velocity,
@@ -78,7 +78,7 @@ impl Scales {
     }
 }
 
-/// All lines of the summary; `wall_time` (s) of the time loop.
+/// Gives all lines of the summary; `wall_time` (s) of the time loop.
 pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<Line> {
     let mut lines = Vec::new();
     let exact = setup::exact(scene).is_ok();
@@ -96,12 +96,12 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<Line> {
     lines
 }
 
-/// The largest size in a list.
+/// Finds the largest size in a list.
 fn peak(list: &[f64]) -> f64 {
     list.iter().fold(0.0, |peak: f64, x| peak.max(x.abs()))
 }
 
-/// Peak of a probe's history, and its error where the exact solution gives a `scale`.
+/// Adds the peak of a probe's history, and its error where the exact solution gives a `scale`.
 fn probe_lines(lines: &mut Vec<Line>, probe: &Probe, outcome: &Outcome, scale: Option<f64>) {
     let mut add = |what: &str, value, unit| {
         lines.push(Line::new(format!("{}_{what}", probe.name), value, unit));
@@ -121,7 +121,7 @@ fn probe_lines(lines: &mut Vec<Line>, probe: &Probe, outcome: &Outcome, scale: O
     add("peak", peak(&computed), unit);
 }
 
-/// Errors of all particles at the end.
+/// Adds the errors of all particles at the end.
 fn field_lines(lines: &mut Vec<Line>, scales: &Scales, outcome: &Outcome) {
     let of = |name: &str| outcome.particles.column(name).unwrap_or_default();
     for (name, unit, scale) in [
@@ -137,8 +137,8 @@ fn field_lines(lines: &mut Vec<Line>, scales: &Scales, outcome: &Outcome) {
     }
 }
 
-/// Energy at both ends of the run, and how far it drifted from the start, or from the work
-/// of the loads.
+/// Adds the energy at both ends of the run, and how far it drifted from the start, or from
+/// the work of the loads.
 fn energy_lines(lines: &mut Vec<Line>, scene: &Scene, outcome: &Outcome) {
     let mut add = |quantity: &str, value, unit| lines.push(Line::new(quantity, value, unit));
     let column = |name: &str| outcome.history.column(name).unwrap_or_default();
@@ -165,12 +165,12 @@ fn energy_lines(lines: &mut Vec<Line>, scene: &Scene, outcome: &Outcome) {
     }
 }
 
-/// The unit of a cost counter.
+/// Gives the unit of a cost counter.
 pub fn cost_unit(name: &str) -> &'static str {
     if name == "bytes_per_particle" { "B" } else { "1" }
 }
 
-/// The cost counters as lines.
+/// Gives the cost counters as lines.
 pub fn cost_lines(cost: &Cost) -> Vec<Line> {
     cost.named()
         .into_iter()

@@ -9,18 +9,18 @@ use vtkio::model::{
     Version, VertexNumbers, Vtk,
 };
 
-/// The name of frame `n`.
+/// Names frame `n`.
 pub fn name(n: usize) -> String {
     format!("particles_{n:06}.vtu")
 }
 
-/// True for the name of a frame, of any run.
+/// Tells whether this is the name of a frame, of any run.
 pub fn is_frame(name: &str) -> bool {
     let number = name.strip_prefix("particles_").and_then(|rest| rest.strip_suffix(".vtu"));
     number.is_some_and(|n| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()))
 }
 
-/// All files of the series.
+/// Writes all files of the series.
 ///
 /// Errors: [`Fault::Write`].
 pub fn files(frames: &[Frame]) -> Result<Vec<(String, Vec<u8>)>, Fault> {
@@ -34,8 +34,8 @@ pub fn files(frames: &[Frame]) -> Result<Vec<(String, Vec<u8>)>, Fault> {
     Ok(files)
 }
 
-/// Each particle is a vertex with its displacement, velocity, stress, density
-/// and mass; missing axes are 0.
+/// Writes each particle as a vertex with its displacement, velocity, stress, density and
+/// mass; missing axes are 0.
 fn vtu(particles: &Table) -> Result<Vec<u8>, Fault> {
     let count = particles.rows().len();
     let vtk = Vtk {
@@ -65,18 +65,18 @@ fn vtu(particles: &Table) -> Result<Vec<u8>, Fault> {
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The columns of a vector.
+/// Names the columns of a vector.
 fn vector(name: &str) -> Vec<String> {
     AXES.iter().map(|axis| format!("{name}_{axis}")).collect()
 }
 
-/// The columns of the stress, of whose symmetric halves the table has the upper one.
+/// Names the columns of the stress, of whose symmetric halves the table has the upper one.
 fn tensor() -> Vec<String> {
     let pairs = (0..9).map(|n: usize| (n / 3, n % 3));
     pairs.map(|(i, j)| format!("stress_{}{}", AXES[i.min(j)], AXES[i.max(j)])).collect()
 }
 
-/// What every particle carries.
+/// Lists what every particle carries.
 fn attributes(particles: &Table) -> Vec<Attribute> {
     let scalar = |name: &str| {
         Attribute::scalars(name, 1).with_data(together(particles, &[name.to_string()]))
@@ -92,7 +92,7 @@ fn attributes(particles: &Table) -> Vec<Attribute> {
     ]
 }
 
-/// The components p = 0, 1, … of every particle, one particle after the other.
+/// Puts the components of every particle together, one particle after the other.
 fn together(particles: &Table, names: &[String]) -> IOBuffer {
     let count = particles.rows().len();
     let column = |name: &String| particles.column(name).unwrap_or_else(|| vec![0.0; count]);
@@ -101,7 +101,7 @@ fn together(particles: &Table, names: &[String]) -> IOBuffer {
     values.collect::<Vec<f64>>().into()
 }
 
-/// The list of files with their times (s).
+/// Writes the list of files with their times (s).
 fn pvd(frames: &[Frame]) -> Vec<u8> {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n\

@@ -1,12 +1,12 @@
-//! One way to compute a scene, as a list of `KEY=VALUE`, and the scene that is computed in
-//! many ways.
+//! A configuration is one way to compute a scene, written as a list of `KEY=VALUE`; a
+//! template is the scene that is computed in many ways.
 
 use crate::run;
 use crate::scene::fault::Fault;
 use crate::scene::{Scene, merged};
 use std::path::Path;
 
-/// The keys that a study varies. A configuration answers for all of them: what the scene
+/// These keys are what a study varies. A configuration answers for all of them: what the scene
 /// says of them itself is taken out first.
 pub const KEYS: [&str; 14] = [
     "method",
@@ -25,32 +25,32 @@ pub const KEYS: [&str; 14] = [
     "time.fraction_of_critical",
 ];
 
-/// One way to compute a scene: values of [`KEYS`] in the form `KEY=VALUE` that `--set`
-/// takes. It is written and read as one line, with a space between them.
+/// A configuration gives values of [`KEYS`] in the form `KEY=VALUE` that `--set` takes. It
+/// is written and read as one line, with a space between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configuration(Vec<String>);
 
 impl Configuration {
-    /// The value of a key; empty for one that the configuration leaves out.
+    /// Gives the value of a key, which is empty if the configuration leaves it out.
     pub fn value(&self, key: &str) -> &str {
         let mut values = self.0.iter().filter_map(|set| set.strip_prefix(key)?.strip_prefix('='));
         values.next().unwrap_or("")
     }
 
-    /// The values of some keys, in words: "lme 0.8".
+    /// Puts the values of some keys side by side, as in "lme 0.8".
     pub fn words(&self, keys: &[&str]) -> String {
         let values = keys.iter().map(|key| self.value(key)).filter(|value| !value.is_empty());
         values.collect::<Vec<_>>().join(" ")
     }
 
-    /// Linear finite elements are the linear basis of OTM. Studies compare with them, but
-    /// they stand on no front and are never the cheapest: where no particle is needed,
-    /// they win.
+    /// Tells whether these are linear finite elements: OTM with the linear basis. Studies
+    /// compare with them, but they stand on no front and are never the cheapest: where no
+    /// particle is needed, they win.
     pub fn is_finite_elements(&self) -> bool {
         self.value("method") == "otm" && self.value("basis.kind") == "linear"
     }
 
-    /// The group of a configuration in a diagram: its basis and mass, or its method.
+    /// Names the group that gives the colour in a diagram: basis and mass, or the method.
     pub fn family(&self) -> String {
         match self.value("method") {
             _ if self.is_finite_elements() => "finite elements".to_string(),
@@ -101,7 +101,7 @@ impl std::str::FromStr for Configuration {
     }
 }
 
-/// A scene that is computed in many ways.
+/// A template is a scene that is computed in many ways.
 #[derive(Clone, Debug)]
 pub struct Template {
     /// The scene as it is written.
@@ -126,7 +126,7 @@ impl Template {
         Ok(Template { scene, path, text: text.to_string(), beyond })
     }
 
-    /// The grid of `method` as part of a configuration: the scene's cells times
+    /// Writes the grid of `method` as part of a configuration: the scene's cells times
     /// `refinement`, at least one, and as many of them beyond the body as it asks for.
     pub fn grid(&self, method: &str, refinement: f64, particles_per_cell: usize) -> String {
         let refined = |cells: f64| libm::round(cells * refinement).max(1.0);
@@ -147,29 +147,29 @@ impl Template {
         grid
     }
 
-    /// The `--set` that make one configuration of the scene.
+    /// Lists the `--set` that make one configuration of the scene.
     fn sets(configuration: &Configuration) -> Vec<String> {
         let mut sets = KEYS.map(|key| format!("{key}=")).to_vec();
         sets.extend_from_slice(&configuration.0);
         sets
     }
 
-    /// The scene of one configuration.
+    /// Reads the scene of one configuration.
     ///
     /// Errors: [`Fault::Scene`] for one that the scene cannot have.
     pub fn scene(&self, configuration: &Configuration) -> Result<Scene, Fault> {
         Ok(run::parse("scene", &self.path, &self.text, &Self::sets(configuration))?)
     }
 
-    /// The scene file of one configuration.
+    /// Writes the scene file of one configuration.
     ///
     /// Errors: [`Fault::Scene`] for one whose keys the scene cannot have.
     pub fn file(&self, configuration: &Configuration) -> Result<String, Fault> {
         Ok(merged(&self.path, &self.text, &Self::sets(configuration))?.to_string())
     }
 
-    /// A digest of the scene that tells one study from another: FNV-1a of all but what
-    /// configurations vary, and of its cells.
+    /// Tells one study from another by a digest of the scene: FNV-1a of its cells and of all
+    /// that configurations do not vary.
     ///
     /// Errors: none for a scene that could be read.
     pub fn digest(&self) -> Result<String, Fault> {

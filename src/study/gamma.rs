@@ -1,4 +1,4 @@
-//! The parametric study of γ: from the mesh-free end to the finite-element end.
+//! The parametric study varies γ from the mesh-free end to the finite-element end.
 
 use super::configuration::{Configuration, Template};
 use super::pool;
@@ -14,7 +14,7 @@ use std::path::Path;
 /// The values of γ.
 pub const GAMMAS: [f64; 12] = [0.3, 0.5, 0.8, 1.0, 1.4, 1.8, 2.5, 4.0, 6.0, 10.0, 20.0, 50.0];
 
-/// What is varied beside γ.
+/// A way is what is varied beside γ.
 pub struct Way {
     pub name: &'static str,
     method: &'static str,
@@ -35,7 +35,7 @@ pub const WAYS: [Way; 3] = [
     Way { name: "otm", method: "otm", mass: "lumped", particles_per_cell: 1, cfl: 0.5 },
 ];
 
-/// A bar of length, modulus and density 1 whose eighth mode is four waves long.
+/// This bar has length, modulus and density 1, and vibrates in a mode of four waves.
 const WAVE: &str = "
 title = 'wave'
 method = 'mpm'
@@ -48,7 +48,7 @@ boundary = { left = 'fixed', right = 'fixed' }
 vibration = { mode = 8, velocity = 1e-7 }
 ";
 
-/// What γ does.
+/// An effect is what γ does to the bar.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effect {
     /// Relative errors on the bar.
@@ -69,7 +69,7 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// Every number with its name, in the order of the columns.
+    /// Lists every number with its name, in the order of the columns.
     pub fn named(&self) -> [(&'static str, f64); 10] {
         [
             ("velocity", self.velocity),
@@ -86,7 +86,7 @@ impl Effect {
     }
 }
 
-/// One γ in one way, and what it does, or why that is not known.
+/// One γ in one way has its effect, or a reason why that is not known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtGamma {
     pub way: &'static str,
@@ -94,7 +94,7 @@ pub struct AtGamma {
     pub effect: Result<Effect, String>,
 }
 
-/// The bar of Dyka and Ingel at every γ in every way; `progress` hears of every one.
+/// Runs the bar of Dyka and Ingel at every γ in every way; `progress` hears of every one.
 pub fn study(jobs: usize, progress: &mut dyn FnMut()) -> Result<Vec<AtGamma>, Fault> {
     let bar = Template::parse(Path::new("dyka.toml"), DYKA)?;
     let wave = Template::parse(Path::new("wave.toml"), WAVE)?;
@@ -107,7 +107,7 @@ pub fn study(jobs: usize, progress: &mut dyn FnMut()) -> Result<Vec<AtGamma>, Fa
     Ok(pool::all(&items, jobs, work, progress))
 }
 
-/// One γ in one way on the grid of a template.
+/// Makes the configuration of one γ in one way on the grid of a template.
 fn configuration(
     template: &Template,
     way: &Way,
@@ -152,8 +152,8 @@ fn effect(bar: &Template, wave: &Template, way: &Way, gamma: f64) -> Result<Effe
     })
 }
 
-/// The relative error of the frequency of a wave that is eight cells long, small time
-/// steps: the phase of its mode after a quarter of its period, over π/2, less 1. (After
+/// Measures the relative error of the frequency of a wave that is eight cells long, with
+/// small time steps: the phase of its mode after a quarter of its period, over π/2, less 1. (After
 /// a whole period a slow wave could be taken for a fast one.)
 fn dispersion(wave: &Template, way: &Way, gamma: f64) -> Result<f64, String> {
     let words = |fault: Fault| fault.to_string();
@@ -169,7 +169,7 @@ fn dispersion(wave: &Template, way: &Way, gamma: f64) -> Result<f64, String> {
     Ok(libm::atan2(onto(&u) * k, onto(&v)) / std::f64::consts::FRAC_PI_2 - 1.0)
 }
 
-/// The curve of each way for the number called `name`; what has no logarithm by its size.
+/// Gives the curve of each way for the size of the number called `name`, without zeros.
 pub fn curves(rows: &[AtGamma], name: &str) -> Vec<(String, CurvePoints)> {
     let point = |row: &AtGamma| {
         let named = row.effect.as_ref().ok()?.named();
@@ -183,7 +183,7 @@ pub fn curves(rows: &[AtGamma], name: &str) -> Vec<(String, CurvePoints)> {
     WAYS.iter().map(curve).collect()
 }
 
-/// The study as CSV.
+/// Writes the study as CSV.
 pub fn table(rows: &[AtGamma]) -> Result<Vec<u8>, Fault> {
     let names = Effect::default().named().map(|(name, _)| name);
     let line = |row: &AtGamma| {

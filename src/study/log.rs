@@ -1,5 +1,5 @@
-//! The log of a study: every timed run is a line, so that a study which was interrupted
-//! goes on where it stopped.
+//! The log of a study has a line for every timed run, so that a study which was
+//! interrupted goes on where it stopped.
 
 use super::configuration::{Configuration, Template};
 use super::measured::Measured;
@@ -11,10 +11,10 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-/// How often each configuration is timed.
+/// Each configuration is timed as often.
 pub const PASSES: usize = 3;
 
-/// One timed run of a configuration.
+/// A timed run is one pass of a configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedRun {
     pub configuration: Configuration,
@@ -26,13 +26,13 @@ pub struct TimedRun {
     pub wall_time: f64,
 }
 
-/// Columns of a run's result: why there is none, or its numbers.
+/// Names the columns of a run's result: why there is none, or its numbers.
 pub fn result_columns() -> Vec<&'static str> {
     let numbers = Measured::default().named();
     std::iter::once("problem").chain(numbers.into_iter().map(|(name, _)| name)).collect()
 }
 
-/// The cells of [`result_columns`].
+/// Fills the cells of [`result_columns`].
 pub fn result_cells(measured: &Result<Measured, String>) -> Vec<String> {
     match measured {
         Ok(measured) => {
@@ -47,7 +47,7 @@ pub fn result_cells(measured: &Result<Measured, String>) -> Vec<String> {
     }
 }
 
-/// Columns of the log; `scene` tells one study from another.
+/// Names the columns of the log; `scene` tells one study from another.
 fn columns() -> Vec<&'static str> {
     let mut columns = vec!["scene", "configuration", "pass"];
     columns.extend(result_columns());
@@ -73,7 +73,7 @@ impl TimedRun {
         cells
     }
 
-    /// The run of a line, if the line is whole.
+    /// Reads the run of a line, if the line is whole.
     fn read(record: &csv::StringRecord) -> Option<Self> {
         let cell = |name: &str| record.get(columns().iter().position(|column| *column == name)?);
         let number = |name: &str| cell(name)?.parse().ok();
@@ -89,7 +89,7 @@ impl TimedRun {
     }
 }
 
-/// The log of some runs of the scene with this digest.
+/// Writes the log of some runs of the scene with this digest.
 pub fn csv_of<'a>(
     scene: &str,
     runs: impl IntoIterator<Item = &'a TimedRun>,
@@ -97,8 +97,8 @@ pub fn csv_of<'a>(
     csv(&columns(), runs.into_iter().map(|run| run.cells(scene)))
 }
 
-/// Runs of a log that belong to the scene with this digest; a last line that an
-/// interruption has cut short is left out.
+/// Reads the runs of a log that belongs to the scene with this digest; a last line that
+/// an interruption has cut short is left out.
 ///
 /// Errors: [`Fault::Read`]; [`Fault::Argument`] for another study's log.
 pub fn read(path: &Path, scene: &str) -> Result<Vec<TimedRun>, Fault> {
@@ -132,8 +132,8 @@ pub fn read(path: &Path, scene: &str) -> Result<Vec<TimedRun>, Fault> {
     Ok(runs)
 }
 
-/// All runs of a grid: those that the log at `path` has, and the others, each
-/// written there as it ends. Passes are interleaved: all configurations once, then
+/// Completes the runs of a grid: takes those that the log at `path` has and makes the
+/// others, each written there as it ends. Passes are interleaved: all configurations once, then
 /// all again. `progress` hears how many of how many are done.
 ///
 /// Errors: those of [`read`]; [`Fault::Write`].
@@ -150,7 +150,7 @@ pub fn complete(
         true => read(path, &scene)?,
         false => Vec::new(),
     };
-    // Written anew, so that a line cut short does not stay.
+    // The log is written anew, so that a line cut short does not stay.
     let new = path.with_extension("csv.part");
     let bytes = csv_of(&scene, &known)?;
     fs::write(&new, bytes).and_then(|()| fs::rename(&new, path)).map_err(fault)?;
@@ -164,7 +164,7 @@ pub fn complete(
     let work = |(one, pass): &(&Configuration, usize)| TimedRun::of(template, one, *pass);
     pool::run(&open, jobs, work, |_, run| {
         let bytes = csv_of(&scene, [&run])?;
-        // Without the header line.
+        // The header line stands there already.
         let start = bytes.iter().position(|b| *b == b'\n').map_or(0, |at| at + 1);
         log.write_all(&bytes[start..]).map_err(fault)?;
         known.push(run);

@@ -1,5 +1,5 @@
-//! The map of stability: every basis, scheme, mass, number of particles and offset,
-//! predicted and measured.
+//! The map of stability has the largest stable time step of every basis, scheme, mass,
+//! number of particles and offset, predicted and measured.
 
 use super::configuration::{Configuration, KEYS, Template};
 use super::pool;
@@ -8,7 +8,8 @@ use crate::run::stability;
 use crate::run::table::{csv, shortest};
 use crate::scene::fault::Fault;
 
-/// Steps of a run that is asked whether it grows, and the width of the answer.
+/// A run that is asked whether it grows takes as many steps, and the limit that it brackets
+/// is known to this width.
 const STEPS: usize = 1500;
 const TOLERANCE: f64 = 2e-3;
 
@@ -21,7 +22,7 @@ const BASES: [&str; 6] = [
     "basis.kind=lme basis.gamma=4",
 ];
 
-/// Every integrator, with what it needs; Newmark's is the first.
+/// Every integrator stands here with what it needs; Newmark's is the first.
 pub const INTEGRATORS: [&str; 6] = [
     "time.integrator=newmark",
     "time.integrator=forward-euler time.stress_update=first",
@@ -31,7 +32,7 @@ pub const INTEGRATORS: [&str; 6] = [
     "time.integrator=generalized-alpha time.rho_b=0.8",
 ];
 
-/// What the map asks the limit of.
+/// A combination is what the map asks the limit of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Combination {
     pub configuration: Configuration,
@@ -40,21 +41,21 @@ pub struct Combination {
     pub offset: f64,
 }
 
-/// The largest stable c Δt / h.
+/// A limit is the largest stable c Δt / h.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     pub predicted: f64,
     pub measured: f64,
 }
 
-/// One combination and its limit, or why there is none.
+/// A place on the map is a combination with its limit, or with a reason why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mapped {
     pub combination: Combination,
     pub limit: Result<Limit, String>,
 }
 
-/// All combinations that a map of the scene has.
+/// Lists all combinations that a map of the scene has.
 pub fn combinations(template: &Template) -> Result<Vec<Combination>, Fault> {
     let mut all = Vec::new();
     let mut add = |method: &str, parts: &str, particles_per_cell: usize, offset: f64| {
@@ -87,7 +88,7 @@ pub fn combinations(template: &Template) -> Result<Vec<Combination>, Fault> {
     Ok(all)
 }
 
-/// The limit of one combination.
+/// Predicts and measures the limit of one combination.
 fn limit(
     template: &Template,
     Combination { configuration, offset, .. }: &Combination,
@@ -104,7 +105,7 @@ fn limit(
     Ok(Limit { predicted, measured })
 }
 
-/// The limits of some combinations; `progress` hears of every one.
+/// Finds the limits of some combinations; `progress` hears of every one.
 pub fn map(
     template: &Template,
     combinations: &[Combination],
@@ -115,7 +116,7 @@ pub fn map(
     pool::all(combinations, jobs, work, progress)
 }
 
-/// Every combination key by key, `offset,predicted,measured,problem`.
+/// Writes every combination key by key, then `offset,predicted,measured,problem`.
 pub fn table(rows: &[Mapped]) -> Result<Vec<u8>, Fault> {
     let line = |Mapped { combination, limit }: &Mapped| {
         let value = |key| combination.configuration.value(key).to_string();

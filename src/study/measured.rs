@@ -1,11 +1,11 @@
-//! What a study keeps of a finished run: how wrong it was, and what it cost.
+//! A study keeps of a finished run how wrong it was, and what it cost.
 
 use crate::method::cost::Cost;
 use crate::output::summary;
 use crate::run::run;
 use crate::scene::Scene;
 
-/// What a run is judged by: its error in one quantity.
+/// A criterion is what a run is judged by: its error in one quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Criterion {
     Velocity,
@@ -17,7 +17,7 @@ impl Criterion {
     pub const ALL: [Criterion; 3] =
         [Criterion::Velocity, Criterion::Stress, Criterion::Displacement];
 
-    /// The name of the quantity, as probes and columns have it.
+    /// Names the quantity, as probes and columns do.
     pub fn name(self) -> &'static str {
         match self {
             Criterion::Velocity => "velocity",
@@ -27,7 +27,7 @@ impl Criterion {
     }
 }
 
-/// Relative errors, energy drift and counted cost of a finished run.
+/// A finished run has relative errors, an energy drift and a counted cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
     pub velocity: f64,
@@ -61,7 +61,7 @@ impl Measured {
         }
     }
 
-    /// The relative error in one quantity.
+    /// Picks the relative error in one quantity.
     pub fn error(&self, criterion: Criterion) -> f64 {
         match criterion {
             Criterion::Velocity => self.velocity,
@@ -70,7 +70,7 @@ impl Measured {
         }
     }
 
-    /// Every number that is not counted with its name, to be set.
+    /// Lists every number that is not a count with its name, to be set.
     fn places(&mut self) -> [(&'static str, &mut f64); 4] {
         [
             ("velocity", &mut self.velocity),
@@ -80,15 +80,15 @@ impl Measured {
         ]
     }
 
-    /// Every number with its name, in the order of the columns.
+    /// Lists every number with its name, in the order of the columns.
     pub fn named(mut self) -> Vec<(&'static str, f64)> {
         let errors = self.places().map(|(name, x)| (name, *x));
         let counts = self.cost.named().map(|(name, count)| (name, count as f64));
         errors.into_iter().chain(counts).collect()
     }
 
-    /// What [`Measured::named`] has written, from the `number` of every name; `None` if one
-    /// is missing.
+    /// Reads what [`Measured::named`] has listed from the `number` of every name; gives `None`
+    /// if one is missing.
     pub fn read(number: impl Fn(&str) -> Option<f64>) -> Option<Self> {
         let mut measured = Measured::default();
         for (name, x) in measured.places() {
@@ -101,7 +101,7 @@ impl Measured {
     }
 }
 
-/// The relative error in one quantity: of its probes together, or of its field at the end
+/// Finds the relative error in one quantity: of its probes together, or of its field at the end
 /// where no probe follows it; `value` gives a line of the summary.
 fn error(scene: &Scene, criterion: Criterion, value: &dyn Fn(&str) -> Option<f64>) -> f64 {
     let name = criterion.name();

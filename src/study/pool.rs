@@ -1,9 +1,9 @@
-//! Independent pieces of work on several threads, each piece on one.
+//! The pool shares independent pieces of work among threads, each piece on one.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 
-/// `work` on every item, by `jobs` threads; `done` hears of each result as it comes,
+/// Does `work` on every item, by `jobs` threads; `done` hears of each result as it comes,
 /// with its number. Results do not depend on the number of threads.
 ///
 /// Errors: the first that `done` returns; what is at work is finished, the rest left.
@@ -42,8 +42,8 @@ pub fn run<T: Sync, R: Send, E>(
     })
 }
 
-/// `work` on every item, by `jobs` threads, in the order of the items; `progress` hears of
-/// every one that is done.
+/// Does `work` on every item, by `jobs` threads, and gives the results in the order of the
+/// items; `progress` hears of every one that is done.
 pub fn all<T: Sync, R: Send>(
     items: &[T],
     jobs: usize,

@@ -1,4 +1,4 @@
-//! Which configurations are worth what they cost.
+//! The ranking tells which configurations are worth what they cost.
 
 use super::configuration::{Configuration, KEYS};
 use super::log::{TimedRun, result_cells, result_columns};
@@ -6,7 +6,7 @@ use super::measured::{Criterion, Measured};
 use crate::run::table::{csv, shortest};
 use crate::scene::fault::Fault;
 
-/// Time of a run over all passes (s).
+/// The time of a run varies over the passes (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallTime {
     pub median: f64,
@@ -14,7 +14,7 @@ pub struct WallTime {
     pub largest: f64,
 }
 
-/// A configuration with all its passes taken together.
+/// A configuration that was tried has all its passes taken together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tried {
     pub configuration: Configuration,
@@ -25,13 +25,13 @@ pub struct Tried {
 }
 
 impl Tried {
-    /// The relative error in one quantity; none for a run that failed.
+    /// Gives the relative error in one quantity; none for a run that failed.
     pub fn error(&self, criterion: Criterion) -> Option<f64> {
         self.measured.as_ref().ok().map(|measured| measured.error(criterion))
     }
 }
 
-/// One line for each configuration, in the order of first appearance.
+/// Takes the passes of each configuration together, in the order of first appearance.
 pub fn summarise(runs: &[TimedRun]) -> Vec<Tried> {
     let mut order: Vec<&Configuration> = Vec::new();
     for run in runs {
@@ -58,13 +58,14 @@ pub fn summarise(runs: &[TimedRun]) -> Vec<Tried> {
     order.into_iter().map(tried).collect()
 }
 
-/// Those that can be on a front, with their error.
+/// Picks those that can be on a front, with their error.
 fn judged(rows: &[Tried], criterion: Criterion) -> impl Iterator<Item = (&Tried, f64)> {
     let own = rows.iter().filter(|row| !row.configuration.is_finite_elements());
     own.filter_map(move |row| Some((row, row.error(criterion)?)))
 }
 
-/// Those that nobody beats in both error and time, by rising time, each with its error.
+/// Picks those that nobody beats in both error and time, by rising time, each with its
+/// error.
 pub fn front(rows: &[Tried], criterion: Criterion) -> Vec<(&Tried, f64)> {
     let mut list: Vec<(&Tried, f64)> = judged(rows, criterion).collect();
     list.sort_by(|a, b| a.0.wall_time.median.total_cmp(&b.0.wall_time.median));
@@ -77,20 +78,20 @@ pub fn front(rows: &[Tried], criterion: Criterion) -> Vec<(&Tried, f64)> {
     list
 }
 
-/// The fastest whose error is at most `error`, with its own.
+/// Picks the fastest whose error is at most `error`, with its own.
 pub fn cheapest(rows: &[Tried], criterion: Criterion, error: f64) -> Option<(&Tried, f64)> {
     judged(rows, criterion)
         .filter(|(_, found)| *found <= error)
         .min_by(|a, b| a.0.wall_time.median.total_cmp(&b.0.wall_time.median))
 }
 
-/// The least error of all; infinite if there is none.
+/// Finds the least error of all, which is infinite if there is none.
 pub fn least_error(rows: &[Tried], criterion: Criterion) -> f64 {
     judged(rows, criterion).map(|(_, error)| error).fold(f64::INFINITY, f64::min)
 }
 
-/// `trade.csv`: every configuration key by key, errors, cost, times, and on which fronts it
-/// stands.
+/// Writes `trade.csv`: every configuration key by key, errors, cost, times, and on which
+/// fronts it stands.
 pub fn table(rows: &[Tried]) -> Result<Vec<u8>, Fault> {
     let mut columns = KEYS.to_vec();
     columns.extend(result_columns());
@@ -110,10 +111,10 @@ pub fn table(rows: &[Tried]) -> Result<Vec<u8>, Fault> {
     csv(&columns, rows.iter().map(line))
 }
 
-/// Error levels of the table of the cheapest.
+/// The table of the cheapest asks for these levels of error.
 pub const LEVELS: [f64; 7] = [0.2, 0.1, 0.05, 0.03, 0.01, 0.003, 0.001];
 
-/// `cheapest.csv`: for each criterion and level the fastest configuration that reaches it.
+/// Writes `cheapest.csv`: for each criterion and level the fastest configuration that reaches it.
 pub fn cheapest_table(rows: &[Tried]) -> Result<Vec<u8>, Fault> {
     let mut lines = Vec::new();
     for criterion in Criterion::ALL {

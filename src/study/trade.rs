@@ -1,11 +1,12 @@
-//! The trade of speed for accuracy: the configurations that a study of it has.
+//! The trade of speed for accuracy is measured on a grid of configurations, which is made
+//! here.
 
 use super::configuration::{Configuration, Template};
 use super::map;
 use crate::run::stability;
 use crate::scene::fault::Fault;
 
-/// The time step of a configuration, as c Δt / h.
+/// The time step of a configuration is given as c Δt / h.
 #[derive(Clone, Copy)]
 enum Step {
     /// Common to all.
@@ -15,7 +16,7 @@ enum Step {
 }
 use Step::{Common, PartOfLimit};
 
-/// What a study varies.
+/// A sweep is what a study varies.
 struct Sweep {
     /// Factors of the scene's cells.
     refinements: &'static [f64],
@@ -68,7 +69,7 @@ const FULL: Sweep = Sweep {
     crossed: true,
 };
 
-/// A way to compute the scene on a grid that is still to be chosen.
+/// A scheme computes the scene on a grid that is still to be chosen.
 struct Scheme {
     method: &'static str,
     /// Mass, basis and integrator.
@@ -77,7 +78,7 @@ struct Scheme {
     step: Step,
 }
 
-/// All schemes of MPM, each with a common time step and with one that is a fixed part of
+/// Lists all schemes of MPM, each with a common time step and with one that is a fixed part of
 /// its own limit.
 fn mpm(sweep: &Sweep) -> Vec<Scheme> {
     let mut all = Vec::new();
@@ -106,7 +107,8 @@ fn mpm(sweep: &Sweep) -> Vec<Scheme> {
     all
 }
 
-/// All schemes of OTM.
+/// Lists all schemes of OTM, each with a common time step and with one just below its own
+/// limit.
 fn otm(sweep: &Sweep) -> Vec<Scheme> {
     let mut all = Vec::new();
     for basis in [LME_0_8, LME_1_8, LME_4, LME_6] {
@@ -120,7 +122,7 @@ fn otm(sweep: &Sweep) -> Vec<Scheme> {
     all
 }
 
-/// The configurations of a study of this template, none twice.
+/// Lists the configurations of a study of this template, none twice.
 ///
 /// In 1D the first row of each grid is the baseline: linear finite elements with
 /// central differences, just below cΔt/h = 1, where they are exact on the bar. (At 1
@@ -144,8 +146,8 @@ pub fn grid(template: &Template, full: bool) -> Result<Vec<Configuration>, Fault
     Ok(all)
 }
 
-/// A scheme on a grid; `None` where its step is a part of a limit that there is not: the
-/// common step tells what is wrong.
+/// Puts a scheme on a grid; gives `None` where its step is a part of a limit that there is
+/// not, and the common step tells what is wrong.
 fn configuration(
     template: &Template,
     scheme: &Scheme,
@@ -163,7 +165,7 @@ fn configuration(
     };
     match stability::predicted(&scene, 0.0).map(|limit| scene.courant_number_of(limit)) {
         Ok(limit) if limit.is_finite() => {
-            // Two digits, so that the configuration is short.
+            // Two digits are enough, and the configuration is short.
             let cfl = libm::floor(part * limit * 100.0) / 100.0;
             Ok(Some(with(cfl.max(0.01))?))
         }
