@@ -156,7 +156,7 @@ fn comparison_on_the_bar() {
     let mut table = String::from(
         "basis,mass,cells,velocity at L,stress at 3L/4,displacement field,largest energy drift,pairs per particle and step,steps\n",
     );
-    let mut lists: Vec<(String, figure::Points)> = Vec::new();
+    let mut lists: Vec<(String, figure::CurvePoints)> = Vec::new();
     for (basis, sets) in BASES.iter().filter(|(name, _)| !name.contains("1.8")) {
         for (mass, mass_sets) in [("lumped", lumped), ("consistent", consistent)] {
             let mut points = Vec::new();
@@ -185,7 +185,7 @@ fn comparison_on_the_bar() {
         }
     }
     approve("comparison__bar", &table);
-    let lists: Vec<(&str, figure::Points)> =
+    let lists: Vec<(&str, figure::CurvePoints)> =
         lists.iter().map(|(name, points)| (name.as_str(), points.clone())).collect();
     let title = "Velocity error of the bar by basis and mass matrix";
     approve_picture("comparison__bar_figure", figure::convergence(title, &lists));
