@@ -28,7 +28,8 @@ pub type Snapshot = [Vec<f64>; 4];
 /// Runs the bar and returns its particles at k = 0, 1, …, N_t; with the linear basis, or
 /// with local max-ent for `gamma` = γ. There is no answer when a particle leaves the grid
 /// or stands where a node without mass is divided by, or when the plain search for λ fails,
-/// as it does from γ = 6 or so.
+/// as it does from γ = 6 or so. All nine steps stand in one piece to be read in one go,
+/// which is why this function is long.
 pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
     let h = bar.length / bar.cells as f64;
     let nodes = bar.cells + 2; // one cell more beyond the free end; node I stands at I h
