@@ -8,7 +8,7 @@ use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::method::basis::Basis;
 use lme_mpm::method::basis::lme::Failure;
-use lme_mpm::method::basis::scattered::Values;
+use lme_mpm::method::basis::scattered::NodeValues;
 use lme_mpm::method::basis::scattered::values_at as lme_at;
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::method::grid::Grid;
@@ -48,7 +48,7 @@ fn point<const D: usize>(basis: &Basis, s: [f64; 3]) -> SVector<f64, D> {
     })
 }
 
-fn row<const D: usize>(basis: &Basis, grid: &Grid<D>, x: SVector<f64, D>) -> Values<D> {
+fn row<const D: usize>(basis: &Basis, grid: &Grid<D>, x: SVector<f64, D>) -> NodeValues<D> {
     on_grid(basis, grid, &[x]).unwrap_or_else(|fault| panic!("{basis:?} at {x:?}: {fault}")).row()
 }
 
@@ -286,7 +286,7 @@ fn lme_becomes_linear() {
     for gamma in [4.0, 8.0, 16.0, 32.0] {
         let linear = row(&Basis::Linear, &grid, x);
         let lme = row(&Basis::Lme { gamma, cutoff: 0.0 }, &grid, x);
-        let value = |row: &Values<2>, I| row.iter().find(|v| v.0 == I).map_or(0.0, |v| v.1);
+        let value = |row: &NodeValues<2>, I| row.iter().find(|v| v.0 == I).map_or(0.0, |v| v.1);
         let error = (0..grid.nodes())
             .map(|I| (value(&lme, I) - value(&linear, I)).abs())
             .fold(0.0, f64::max);
@@ -326,7 +326,8 @@ fn lme_is_a_product_on_a_full_grid() {
     };
     let x = Vector2::new(0.33, 0.77);
     let basis = Basis::Lme { gamma: 1.3, cutoff: 0.0 };
-    let along: Vec<Values<1>> = (0..2).map(|d| row(&basis, &line(d), Vector1::new(x[d]))).collect();
+    let along: Vec<NodeValues<1>> =
+        (0..2).map(|d| row(&basis, &line(d), Vector1::new(x[d]))).collect();
     for (I, N, grad) in row(&basis, &grid, x) {
         let [i, j] = grid.index(I);
         let (a, b) = (along[0][i], along[1][j]);

@@ -314,7 +314,8 @@ fn scenes_by_name() {
     fs::write(dir.join("gravity"), gravity.replace("Sudden", "My")).unwrap();
     assert!(print(&["run", "gravity", "--out", "mine"]).contains("My gravity"));
     assert!(print(&["trace", "dyka", "--set", "grid.cells=4"]).starts_with("k,step,"));
-    let row = "mpm/lumped/linear/newmark/0.25/2/0.5";
+    let row = "method=mpm mass=lumped basis.kind=linear time.integrator=newmark grid.cells=10 \
+               grid.particles_per_cell=2 time.cfl=0.5";
     assert!(print(&["trade", "--scene", "vibration", "--row", row]).contains(row));
     let schema: Value = serde_json::from_str(&print(&["scenes", "schema"])).unwrap();
     assert_eq!(schema, lme_mpm::scene::schema::schema());

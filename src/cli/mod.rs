@@ -10,7 +10,7 @@ use clap_complete::Shell;
 use comfy_table::{CellAlignment, Table, presets};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lme_mpm::method::basis::Basis;
-use lme_mpm::output::summary::Line;
+use lme_mpm::output::summary::SummaryLine;
 use lme_mpm::output::{files, report};
 use lme_mpm::port::check::{self, Tolerance};
 use lme_mpm::port::points::{self, Points};
@@ -99,7 +99,7 @@ fn run(scene: &Scene, out: Option<PathBuf>, quiet: bool) -> Result<(), Fault> {
 }
 
 /// The summary as a table for the terminal.
-fn table(lines: &[Line]) -> Table {
+fn table(lines: &[SummaryLine]) -> Table {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_header(["quantity", "value", "unit"]);
     for line in lines {

@@ -2,7 +2,7 @@
 //! summary, cost and pictures.
 
 use super::files::{prepare, write_all};
-use super::summary::{self, Line};
+use super::summary::{self, SummaryLine};
 use super::{figure, vtk};
 use crate::method::breakdown::Breakdown;
 use crate::method::choice::Mass;
@@ -61,7 +61,7 @@ pub fn run_into(
     dir: &Path,
     scene: &Scene,
     progress: &mut dyn FnMut(usize),
-) -> Result<Vec<Line>, Fault> {
+) -> Result<Vec<SummaryLine>, Fault> {
     let limit = stable(scene)?;
     prepare(dir)?;
     free_names(dir, scene)?;
@@ -72,8 +72,8 @@ pub fn run_into(
     };
     let mut lines = summary::lines(scene, &outcome, start.elapsed().as_secs_f64());
     if let Some(limit) = limit.map(|limit| limit.min(f64::MAX)) {
-        lines.push(Line::new("critical_time_step", limit, "s"));
-        lines.push(Line::new("fraction_of_critical", outcome.dt / limit, "1"));
+        lines.push(SummaryLine::new("critical_time_step", limit, "s"));
+        lines.push(SummaryLine::new("fraction_of_critical", outcome.dt / limit, "1"));
     }
     let cost = summary::cost_lines(&outcome.cost);
     let mut files = vec![
@@ -152,8 +152,9 @@ fn earlier(dir: &Path) -> Vec<String> {
 }
 
 /// Writes `quantity,value,unit`.
-fn lines_csv(lines: &[Line]) -> Result<Vec<u8>, Fault> {
-    let row =
-        |line: &Line| vec![line.quantity.clone(), shortest(line.value), line.unit.to_string()];
+fn lines_csv(lines: &[SummaryLine]) -> Result<Vec<u8>, Fault> {
+    let row = |line: &SummaryLine| {
+        vec![line.quantity.clone(), shortest(line.value), line.unit.to_string()]
+    };
     csv(&["quantity", "value", "unit"], lines.iter().map(row))
 }

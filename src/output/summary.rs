@@ -9,15 +9,15 @@ use crate::setup;
 
 /// A line of the summary is a number with a name and a unit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct SummaryLine {
     pub quantity: String,
     pub value: f64,
     pub unit: &'static str,
 }
 
-impl Line {
+impl SummaryLine {
     pub fn new(quantity: impl Into<String>, value: f64, unit: &'static str) -> Self {
-        Line { quantity: quantity.into(), value, unit }
+        SummaryLine { quantity: quantity.into(), value, unit }
     }
 }
 
@@ -79,7 +79,7 @@ impl Scales {
 }
 
 /// Gives all lines of the summary; `wall_time` (s) of the time loop.
-pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<Line> {
+pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<SummaryLine> {
     let mut lines = Vec::new();
     let exact = setup::exact(scene).is_ok();
     let scales = Scales::of(scene);
@@ -90,9 +90,9 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<Line> {
         field_lines(&mut lines, &scales, outcome);
     }
     energy_lines(&mut lines, scene, outcome);
-    lines.push(Line::new("time_step", outcome.dt, "s"));
-    lines.push(Line::new("courant_number", scene.courant_number(), "1"));
-    lines.push(Line::new("wall_time", wall_time, "s"));
+    lines.push(SummaryLine::new("time_step", outcome.dt, "s"));
+    lines.push(SummaryLine::new("courant_number", scene.courant_number(), "1"));
+    lines.push(SummaryLine::new("wall_time", wall_time, "s"));
     lines
 }
 
@@ -102,9 +102,9 @@ fn peak(list: &[f64]) -> f64 {
 }
 
 /// Adds the peak of a probe's history, and its error where the exact solution gives a `scale`.
-fn probe_lines(lines: &mut Vec<Line>, probe: &Probe, outcome: &Outcome, scale: Option<f64>) {
+fn probe_lines(lines: &mut Vec<SummaryLine>, probe: &Probe, outcome: &Outcome, scale: Option<f64>) {
     let mut add = |what: &str, value, unit| {
-        lines.push(Line::new(format!("{}_{what}", probe.name), value, unit));
+        lines.push(SummaryLine::new(format!("{}_{what}", probe.name), value, unit));
     };
     let column = |name: &str| outcome.history.column(name).unwrap_or_default();
     let unit = probe.quantity.name_unit().1;
@@ -122,7 +122,7 @@ fn probe_lines(lines: &mut Vec<Line>, probe: &Probe, outcome: &Outcome, scale: O
 }
 
 /// Adds the errors of all particles at the end.
-fn field_lines(lines: &mut Vec<Line>, scales: &Scales, outcome: &Outcome) {
+fn field_lines(lines: &mut Vec<SummaryLine>, scales: &Scales, outcome: &Outcome) {
     let of = |name: &str| outcome.particles.column(name).unwrap_or_default();
     for (name, unit, scale) in [
         ("velocity", "m/s", scales.velocity),
@@ -130,17 +130,17 @@ fn field_lines(lines: &mut Vec<Line>, scales: &Scales, outcome: &Outcome) {
         ("displacement", "m", scales.displacement),
     ] {
         let error = rms(of(name).into_iter().zip(of(&format!("{name}_exact"))));
-        lines.push(Line::new(format!("{name}_field_rms"), error, unit));
+        lines.push(SummaryLine::new(format!("{name}_field_rms"), error, unit));
         if scale > 0.0 {
-            lines.push(Line::new(format!("{name}_field_rms_relative"), error / scale, "1"));
+            lines.push(SummaryLine::new(format!("{name}_field_rms_relative"), error / scale, "1"));
         }
     }
 }
 
 /// Adds the energy at both ends of the run, and how far it drifted from the start, or from
 /// the work of the loads.
-fn energy_lines(lines: &mut Vec<Line>, scene: &Scene, outcome: &Outcome) {
-    let mut add = |quantity: &str, value, unit| lines.push(Line::new(quantity, value, unit));
+fn energy_lines(lines: &mut Vec<SummaryLine>, scene: &Scene, outcome: &Outcome) {
+    let mut add = |quantity: &str, value, unit| lines.push(SummaryLine::new(quantity, value, unit));
     let column = |name: &str| outcome.history.column(name).unwrap_or_default();
     let (kinetic, strain) = (column("kinetic_energy"), column("strain_energy"));
     let total: Vec<f64> = kinetic.iter().zip(&strain).map(|(k, s)| k + s).collect();
@@ -171,9 +171,9 @@ pub fn cost_unit(name: &str) -> &'static str {
 }
 
 /// Gives the cost counters as lines.
-pub fn cost_lines(cost: &Cost) -> Vec<Line> {
+pub fn cost_lines(cost: &Cost) -> Vec<SummaryLine> {
     cost.named()
         .into_iter()
-        .map(|(name, count)| Line::new(name, count as f64, cost_unit(name)))
+        .map(|(name, count)| SummaryLine::new(name, count as f64, cost_unit(name)))
         .collect()
 }

@@ -1,7 +1,7 @@
 //! CSV of points in, CSV of values out: the commands `exact` and `shape`.
 
 use super::rows::{self, Rows};
-use crate::method::basis::scattered::{Values, values_at};
+use crate::method::basis::scattered::{NodeValues, values_at};
 use crate::method::basis::{self, Basis, Scratch};
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
@@ -160,7 +160,7 @@ fn shape_in<const D: usize>(
                 let problem = format!("point {n} stands outside the grid, or reaches beyond it");
                 points.fault(n, problem, "a point inside the grid of nodes".to_string())
             })?,
-            _ => Values::new(),
+            _ => NodeValues::new(),
         };
         let in_support = |(_, N, grad): &(usize, f64, SVector<f64, D>)| {
             *N != 0.0 || grad.iter().any(|slope| *slope != 0.0)
@@ -183,7 +183,7 @@ struct Regular<const D: usize> {
 }
 
 impl<const D: usize> Regular<D> {
-    fn values(&self, basis: &Basis, x: &SVector<f64, D>) -> Result<Values<D>, Breakdown> {
+    fn values(&self, basis: &Basis, x: &SVector<f64, D>) -> Result<NodeValues<D>, Breakdown> {
         let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
         let x = [x - self.lowest];
         // Of these bases none has a λ.

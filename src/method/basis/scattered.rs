@@ -119,7 +119,7 @@ fn see<const D: usize>(
 }
 
 /// What a point sees: node, N (–) and ∇N (1/m).
-pub type Values<const D: usize> = Vec<(usize, f64, SVector<f64, D>)>;
+pub type NodeValues<const D: usize> = Vec<(usize, f64, SVector<f64, D>)>;
 
 /// Evaluates local max-ent at one point among a list of nodes: those within R of x, as
 /// (node, N, ∇N), and λ (1/m).
@@ -131,7 +131,7 @@ pub fn values_at<const D: usize>(
     gamma: f64,
     cutoff: f64,
     x: &SVector<f64, D>,
-) -> Result<(Values<D>, SVector<f64, D>), Failure> {
+) -> Result<(NodeValues<D>, SVector<f64, D>), Failure> {
     if nodes.iter().chain([x]).any(|place| place.iter().any(|x| !x.is_finite())) {
         return Err(Failure::NotFinite);
     }
