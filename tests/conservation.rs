@@ -225,8 +225,8 @@ fn conservation_of_colliding_discs() {
         let history = finished(&scene(DISCS, basis.sets)).history;
         let (kinetic, total) = (column(&history, "kinetic_energy"), total_energy(&history));
         let shares = kinetic.iter().map(|energy| energy / total[0]);
-        let least = shares.clone().fold(f64::INFINITY, f64::min);
-        let end = shares.last().unwrap();
+        let least = shares.fold(f64::INFINITY, f64::min);
+        let end = kinetic.last().unwrap() / total[0];
         let drift = total.last().unwrap() / total[0] - 1.0;
         let swing = largest(total.iter().map(|energy| energy / total[0] - 1.0));
         let of_one_disc = 1000.0 * 0.1257 * 0.1;

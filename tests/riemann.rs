@@ -99,7 +99,7 @@ fn riemann_against_images_at_60_digits() {
 }
 
 /// Up to the latest time the fields stay within what the patch brings: the velocity below
-/// that of the patch, the stress below twice the plateau.
+/// that of the patch, the stress below twice the plateau, the displacement below v0 L/c.
 #[test]
 fn riemann_far_times_stay_bounded() {
     let bar = dyka_bar();

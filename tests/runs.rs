@@ -80,9 +80,9 @@ fn run_rigid_motion_of_every_basis() {
     }
 }
 
-/// At any other speed, here 7.3, −0.1 and 123.456 m/s, the stress of rigid motion is round-off: p_I and m_I are
-/// sums of at most four rounded terms each, so a strain increment is below
-/// 4 ε (v Δt/h).
+/// At any other speed, here 7.3, −0.1 and 123.456 m/s, the stress of rigid motion is
+/// round-off: p_I and m_I are sums of at most four rounded terms each, so a strain
+/// increment is below 4 ε (v Δt/h).
 #[test]
 fn run_rigid_motion_at_any_speed_is_round_off() {
     for velocity in [7.3, -0.1, 123.456] {
