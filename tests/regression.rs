@@ -99,44 +99,6 @@ fn dyka_summary() {
     approve("dyka__summary", &text);
 }
 
-/// Errors of the bar against the number of cells, 40 to 640, are the approved ones: table,
-/// picture, slopes.
-#[test]
-fn dyka_convergence() {
-    let cells = [40, 80, 160, 320, 640];
-    let mut text = String::from(
-        "cells,velocity at L,stress at 3L/4,displacement field,largest energy drift\n",
-    );
-    let errors = cells.map(|n| {
-        let scene = dyka(&[&format!("grid.cells={n}")]);
-        let outcome = finished(&scene);
-        let error = bar_errors(&scene, &outcome);
-        let drift = value(&scene, &outcome, "energy_drift_largest");
-        let Each { v, sigma, u } = error;
-        writeln!(text, "{n},{v:.5},{sigma:.5},{u:.5},{drift:.5}").unwrap();
-        error
-    });
-    approve("dyka__errors", &text);
-    let list = |pick: fn(&Each<f64>) -> f64| -> figure::Points {
-        cells.iter().zip(&errors).map(|(n, error)| (f64::from(*n), pick(error))).collect()
-    };
-    let lists = [
-        ("velocity at L", list(|error| error.v)),
-        ("stress at 3L/4", list(|error| error.sigma)),
-        ("displacement field", list(|error| error.u)),
-    ];
-    approve_picture("dyka__convergence", figure::convergence("Errors of the bar", &lists));
-    let h = cells.map(|n| 1.0 / f64::from(n));
-    let Each { v, sigma, u } = orders(&h, &errors);
-    let mut text = String::from("quantity,value,unit\n");
-    for (name, order) in
-        [("velocity_end", v), ("stress_three_quarter", sigma), ("displacement_field", u)]
-    {
-        writeln!(text, "{name}_order,{:.4},1", order.slope).unwrap();
-    }
-    approve("dyka__orders", &text);
-}
-
 /// What wins where (§6.1): the bases on the bar with both mass matrices, on 40 to 160
 /// cells, with energy drift and counted cost beside the errors. The table and the figure
 /// of the book's comparison are the approved ones.
@@ -146,7 +108,7 @@ fn comparison_on_the_bar() {
         "basis,mass,cells,velocity at L,stress at 3L/4,displacement field,\
          largest energy drift,pairs per particle and step,steps\n",
     );
-    let mut lists: Vec<(String, figure::Points)> = Vec::new();
+    let mut lists: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for basis in BASES.into_iter().filter(|basis| *basis != LME_MIDDLE) {
         for (mass, cfl) in [(LUMPED, "time.cfl=0.5"), (CONSISTENT, "time.cfl=0.2")] {
             let mut points = Vec::new();
@@ -171,7 +133,7 @@ fn comparison_on_the_bar() {
         }
     }
     approve("comparison__bar", &table);
-    let lists: Vec<(&str, figure::Points)> =
+    let lists: Vec<(&str, Vec<(f64, f64)>)> =
         lists.iter().map(|(name, points)| (name.as_str(), points.clone())).collect();
     let title = "Velocity error of the bar by basis and mass matrix";
     approve_picture("comparison__bar_figure", figure::convergence(title, &lists));
@@ -202,11 +164,11 @@ fn comparison_across_cells() {
         let sets = [basis.sets, &["time.end=0.04", "output.every=20"]].concat();
         (basis.name, finished(&scene(&linear, &sets)).history)
     });
-    let curve = |history: &Table, name: &str| -> figure::Points {
+    let curve = |history: &Table, name: &str| -> Vec<(f64, f64)> {
         let t = column(history, "t").into_iter().map(|t| t * 1e3);
         t.zip(column(history, name)).collect()
     };
-    let mut lists: Vec<(String, figure::Points)> = Vec::new();
+    let mut lists: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for (name, history) in &histories {
         lists.push((name.to_string(), curve(history, "displacement_middle")));
     }
