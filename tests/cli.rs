@@ -160,10 +160,8 @@ fn shape_prints_values() {
 #[test]
 fn help_shows_examples() {
     let dir = directory("help");
-    for arguments in
-        [&["--help"][..], &["run", "--help"], &["exact", "--help"], &["shape", "--help"]]
-    {
-        let output = program(&dir, arguments);
+    for command in ["--help", "run", "exact", "shape", "scenes", "completions"] {
+        let output = program(&dir, &[command, "--help"]);
         assert!(output.status.success());
         let stdout = text(&output.stdout);
         assert!(stdout.contains("Example:\n  "), "{stdout}");

@@ -1,7 +1,9 @@
 //! The rooms of the house: who may know what, read from the `use` lines and paths of the
 //! code itself.
 
+use crate::support::{approve, approve_picture};
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
@@ -175,4 +177,123 @@ fn house_reads_use_lines() {
         assert!(found.iter().any(|one| one == path), "{found:?}");
     }
     assert_eq!(target("method::cost::Cost", &modules()), Some("method::cost"));
+}
+
+/// What stands in each room, from the top down: its first sentence, its files, and the
+/// rooms that it uses.
+struct Room {
+    name: &'static str,
+    says: String,
+    files: Vec<String>,
+    uses: Vec<&'static str>,
+}
+
+fn rooms() -> Vec<Room> {
+    let (all, arrows) = (modules(), arrows());
+    let describe = |name: &'static str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(name).join("mod.rs");
+        let text = fs::read_to_string(path).unwrap();
+        let comment = text.lines().map_while(|line| line.strip_prefix("//!"));
+        let comment = comment.map(str::trim).collect::<Vec<_>>().join(" ");
+        let says = comment.split(". ").next().unwrap().trim_end_matches('.').to_string();
+        let inside = |module: &&String| module.split("::").next() == Some(name);
+        let file = |module: &String| module.split_once("::").map(|(_, file)| file.to_string());
+        let leads = |other: &&&'static str| {
+            arrows.iter().any(|(from, to)| inside(&from) && to.split("::").next() == Some(other))
+        };
+        Room {
+            name,
+            says,
+            files: all.keys().filter(inside).filter_map(file).collect(),
+            uses: ROOMS.iter().filter(|other| **other != name).filter(leads).copied().collect(),
+        }
+    };
+    ROOMS.into_iter().map(describe).collect()
+}
+
+/// The map of the code in the book: a table and a picture, drawn from the code itself.
+#[test]
+fn house_is_on_the_map() {
+    let rooms = rooms();
+    let mut table = String::from("room,what it holds,files,uses\n");
+    for Room { name, says, files, uses } in &rooms {
+        assert!(says.len() > 20 && files.len() > 1, "{name}: {says}");
+        let list = |names: &[&str]| names.join(", ");
+        let files = shelves(files).join("; ");
+        writeln!(table, "{name},\"{says}\",\"{files}\",\"{}\"", list(uses)).unwrap();
+    }
+    approve("house__rooms", &table);
+    approve_picture("house__map", picture(&rooms));
+}
+
+/// The files of a room in lines: its own first, then each folder with what is in it.
+fn shelves(files: &[String]) -> Vec<String> {
+    let mut lines: Vec<(String, Vec<&str>)> = vec![(String::new(), Vec::new())];
+    for file in files {
+        let (folder, name) = file.split_once("::").unwrap_or(("", file));
+        let is_folder = files.iter().any(|other| other.starts_with(&format!("{file}::")));
+        match lines.iter_mut().find(|(known, _)| known == folder) {
+            Some((_, names)) if !is_folder => names.push(name),
+            None => lines.push((folder.to_string(), vec![name])),
+            _ => {}
+        }
+    }
+    let line = |(folder, names): &(String, Vec<&str>)| match folder.as_str() {
+        "" => names.join(", "),
+        folder => format!("{folder}/ {}", names.join(", ")),
+    };
+    lines.iter().map(line).collect()
+}
+
+/// The rooms as floors of a house; a line on the right leads from each room down to those
+/// that it uses.
+fn picture(rooms: &[Room]) -> String {
+    const WIDTH: usize = 600;
+    const LINE: usize = 17;
+    const COLOURS: [&str; 8] =
+        ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#882255", "#44aa99"];
+    let (mut body, mut y, mut floors) = (String::new(), 10, Vec::new());
+    for Room { name, says, files, .. } in rooms {
+        let lines = shelves(files);
+        let height = 34 + LINE * (lines.len() + 1);
+        write!(
+            body,
+            "<rect x=\"10\" y=\"{y}\" width=\"{WIDTH}\" height=\"{height}\" rx=\"4\" fill=\"#f7f7f7\" \
+             stroke=\"#444444\"/>\n<text x=\"22\" y=\"{}\" font-size=\"15\" font-weight=\"bold\">{name}\
+             </text>\n<text x=\"22\" y=\"{}\" font-size=\"12\">{}</text>\n",
+            y + 21,
+            y + 21 + LINE,
+            says.replace('&', "&amp;").replace('<', "&lt;")
+        )
+        .unwrap();
+        for (n, line) in lines.iter().enumerate() {
+            let at = y + 21 + LINE * (n + 2);
+            writeln!(
+                body,
+                "<text x=\"22\" y=\"{at}\" font-size=\"11\" fill=\"#555555\">{line}</text>"
+            )
+            .unwrap();
+        }
+        floors.push(y + height / 2);
+        y += height + 12;
+    }
+    for (from, room) in rooms.iter().enumerate() {
+        for to in room.uses.iter().map(|name| ROOMS.iter().position(|room| room == name).unwrap()) {
+            let (a, b) = (floors[from], floors[to] - 8 + 2 * from);
+            let (edge, out) = (WIDTH + 10, WIDTH + 40 + 26 * (to - from));
+            writeln!(
+                body,
+                "<path d=\"M {edge} {a} C {out} {a} {out} {b} {edge} {b}\" fill=\"none\" \
+                 stroke=\"{}\" stroke-width=\"1.4\" marker-end=\"url(#tip)\"/>",
+                COLOURS[from]
+            )
+            .unwrap();
+        }
+    }
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 840 {y}\" font-family=\"sans-serif\">\n\
+         <defs><marker id=\"tip\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"7\" \
+         markerHeight=\"7\" orient=\"auto\"><path d=\"M 0 0 L 8 4 L 0 8 z\" fill=\"#444444\"/></marker>\
+         </defs>\n<rect width=\"840\" height=\"{y}\" fill=\"#ffffff\"/>\n{body}</svg>\n"
+    )
 }

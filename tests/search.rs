@@ -10,7 +10,7 @@ use lme_mpm::method::time::otm;
 use nalgebra::{Vector1, Vector2};
 
 /// The search finds what looking at all nodes finds, wherever they stand, and the
-/// table is the one of `support::at`.
+/// table is the one of `scattered::values_at`.
 #[test]
 fn otm_neighbours_are_complete() {
     let h = Vector2::new(0.1, 0.07);

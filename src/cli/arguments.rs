@@ -1,6 +1,9 @@
 //! What the command line understands.
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use lme_mpm::scene::SHIPPED;
 use std::path::PathBuf;
 
 /// The Material Point Method with local maximum-entropy shape functions.
@@ -10,7 +13,7 @@ use std::path::PathBuf;
 #[derive(Parser)]
 #[command(
     version,
-    after_help = "Example:\n  lme-mpm            run the built-in bar\n  lme-mpm run --help what a run reads and writes"
+    after_help = "Example:\n  lme-mpm            run the built-in bar\n  lme-mpm scenes     list what else is built in\n  lme-mpm run --help what a run reads and writes"
 )]
 pub struct Arguments {
     #[command(subcommand)]
@@ -24,10 +27,10 @@ pub enum Command {
     /// Writes history.csv, particles.csv, summary.csv, cost.csv and one SVG
     /// for each probe. A run that breaks down leaves history.failed.csv only.
     #[command(
-        after_help = "Example:\n  lme-mpm run data/scenes/dyka.toml --set grid.cells=160 --set time.cfl=0.9 --out out/fine"
+        after_help = "Example:\n  lme-mpm run dyka --set grid.cells=160 --set time.cfl=0.9 --out out/fine"
     )]
     Run {
-        /// The scene file (TOML, SI units)
+        /// The scene: a file (TOML, SI units), or the name of a shipped one
         scene: PathBuf,
         /// Where to write; out/<scene name> without it
         #[arg(long, value_name = "DIR")]
@@ -39,16 +42,24 @@ pub enum Command {
         #[arg(long, short)]
         quiet: bool,
     },
+    /// List the shipped scenes, print one to start from, or the schema of scenes
+    #[command(
+        after_help = "Example:\n  lme-mpm scenes\n  lme-mpm scenes show dyka > my-bar.toml\n  lme-mpm scenes schema > scene.schema.json"
+    )]
+    Scenes {
+        #[command(subcommand)]
+        ask: Option<Scenes>,
+    },
     /// Evaluate the exact solution of a scene at points
     ///
     /// Reads CSV with the columns x,t (m, s) and prints CSV
     /// x,t,velocity,stress,displacement (m, s, m/s, Pa, m), where x is the
     /// place of the material point at t = 0.
     #[command(
-        after_help = "Example:\n  printf 'x,t\\n0.1333,1e-5\\n' | lme-mpm exact data/scenes/dyka.toml --points -"
+        after_help = "Example:\n  printf 'x,t\\n0.1333,1e-5\\n' | lme-mpm exact dyka --points -"
     )]
     Exact {
-        /// The scene file (TOML, SI units)
+        /// The scene: a file (TOML, SI units), or the name of a shipped one
         scene: PathBuf,
         /// The points; - reads standard input
         #[arg(long, value_name = "FILE|-")]
@@ -69,10 +80,10 @@ pub enum Command {
     /// CSV k,step,symbol,index,node,component,value in the paper's order, to hold a
     /// port against; see `lme-mpm check`.
     #[command(
-        after_help = "Example:\n  lme-mpm trace data/scenes/dyka.toml --steps 2 --set grid.cells=4 --out trace.csv"
+        after_help = "Example:\n  lme-mpm trace dyka --steps 2 --set grid.cells=4 --out trace.csv"
     )]
     Trace {
-        /// The scene file (TOML, SI units)
+        /// The scene: a file (TOML, SI units), or the name of a shipped one
         scene: PathBuf,
         /// How many time steps, at most those of the scene
         #[arg(long, value_name = "K", default_value_t = 1)]
@@ -126,10 +137,10 @@ pub enum Command {
     /// Measures as `trade` does, prints the evidence, and writes
     /// recommended.toml, a scene file ready to run.
     #[command(
-        after_help = "Example:\n  lme-mpm recommend data/scenes/vibration.toml --error 1% --quantity displacement"
+        after_help = "Example:\n  lme-mpm recommend vibration --error 1% --quantity displacement"
     )]
     Recommend {
-        /// The scene file (TOML, SI units); it needs an exact solution
+        /// The scene, with an exact solution: a file (TOML, SI units), or the name of a shipped one
         scene: PathBuf,
         /// The relative error to reach, as 1% or 0.01
         #[arg(long, value_parser = percent)]
@@ -164,7 +175,7 @@ pub enum Command {
     /// per cell and offset on the grid of a scene.
     #[command(after_help = "Example:\n  lme-mpm stability --out out/stability --jobs 2")]
     Stability {
-        /// The scene file; the built-in bar on 10 cells without it
+        /// The scene, a file or a shipped one; the bar on 10 cells without it
         #[arg(long, value_name = "FILE")]
         scene: Option<PathBuf>,
         /// Where to write
@@ -174,11 +185,27 @@ pub enum Command {
         #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
         jobs: u16,
     },
+    /// Print what makes a shell complete this program's commands
+    #[command(
+        after_help = "Example:\n  lme-mpm completions bash > ~/.local/share/bash-completion/completions/lme-mpm"
+    )]
+    Completions { shell: Shell },
+}
+
+#[derive(Subcommand)]
+pub enum Scenes {
+    /// Print a shipped scene
+    Show {
+        #[arg(value_parser = PossibleValuesParser::new(SHIPPED.iter().map(|scene| scene.name)))]
+        name: String,
+    },
+    /// Print the JSON Schema of a scene, for editors
+    Schema,
 }
 
 #[derive(Args)]
 pub struct TradeArguments {
-    /// The scene file; the built-in bar without it
+    /// The scene, a file or a shipped one; the bar without it
     #[arg(long, value_name = "FILE")]
     pub scene: Option<PathBuf>,
     /// Where to write

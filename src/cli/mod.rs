@@ -1,11 +1,12 @@
-//! The commands. No numerics here.
+//! The commands of the program: what a user types, and what the terminal shows.
 
 mod arguments;
 mod studies;
 mod terminal;
 
-use arguments::{Arguments, BasisName, Command, ShapeArguments};
-use clap::Parser;
+use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments};
+use clap::{CommandFactory, Parser};
+use clap_complete::Shell;
 use comfy_table::{CellAlignment, Table, presets};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lme_mpm::method::basis::Basis;
@@ -14,7 +15,8 @@ use lme_mpm::output::{files, report};
 use lme_mpm::port::check::{self, Tolerance};
 use lme_mpm::port::points::{self, Points};
 use lme_mpm::scene::fault::Fault;
-use lme_mpm::scene::{DYKA, Scene};
+use lme_mpm::scene::schema::schema;
+use lme_mpm::scene::{DYKA, SHIPPED, Scene, declare, shipped};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -30,6 +32,8 @@ pub fn main() -> ExitCode {
         Some(Command::Run { scene, out, set, quiet }) => {
             files::scene(&scene, &set).and_then(|scene| run(&scene, out, quiet))
         }
+        Some(Command::Scenes { ask }) => scenes(ask),
+        Some(Command::Completions { shell }) => completions(shell),
         Some(Command::Exact { scene, points }) => exact(&scene, &points),
         Some(Command::Shape(arguments)) => shape(&arguments),
         Some(Command::Trace { scene, steps, set, hex, out }) => {
@@ -111,6 +115,31 @@ fn table(lines: &[Line]) -> Table {
         column.set_cell_alignment(CellAlignment::Right);
     }
     table
+}
+
+/// `lme-mpm scenes`.
+fn scenes(ask: Option<Scenes>) -> Result<(), Fault> {
+    match ask {
+        None => {
+            let mut list = String::new();
+            for scene in SHIPPED {
+                let title = declare(scene.name, scene.name, scene.text, &[])?.scene.title;
+                list += &format!("{:16} {title}\n", scene.name);
+            }
+            print_bytes(list.as_bytes())
+        }
+        Some(Scenes::Show { name }) => {
+            print_bytes(shipped(&name).map_or("", |scene| scene.text).as_bytes())
+        }
+        Some(Scenes::Schema) => print_bytes(format!("{:#}\n", schema()).as_bytes()),
+    }
+}
+
+/// `lme-mpm completions`.
+fn completions(shell: Shell) -> Result<(), Fault> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "lme-mpm", &mut script);
+    print_bytes(&script)
 }
 
 fn exact(scene: &Path, points: &Path) -> Result<(), Fault> {

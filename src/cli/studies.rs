@@ -24,7 +24,7 @@ fn progress(length: usize) -> ProgressBar {
 }
 
 fn open(path: &Path) -> Result<Template, Fault> {
-    Template::parse(path, &files::text(path)?)
+    Template::parse(path, &files::scene_text(path)?)
 }
 
 fn template(scene: Option<&Path>) -> Result<Template, Fault> {

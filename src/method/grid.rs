@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-/// All index tuples below `count`, the first axis fastest; by carrying, since a
+/// Counts through all index tuples below `count`, the first axis fastest; by carrying, since a
 /// division per tuple would cost more than what is done with it.
 pub fn odometer<const D: usize>(count: [usize; D]) -> impl Iterator<Item = [usize; D]> {
     let mut next = count.iter().all(|n| *n > 0).then_some([0; D]);
@@ -47,7 +47,7 @@ pub struct Located<const D: usize> {
 }
 
 impl<const D: usize> Grid<D> {
-    /// A grid of `cells` cells over a body of `length` (m) along each axis, and
+    /// Lays a grid of `cells` cells over a body of `length` (m) along each axis, and
     /// `beyond` cells more before and after it.
     pub fn over(length: [f64; D], cells: [usize; D], beyond: [[usize; 2]; D]) -> Self {
         let h = SVector::from_fn(|d, _| length[d] / cells[d] as f64);
@@ -59,12 +59,12 @@ impl<const D: usize> Grid<D> {
         }
     }
 
-    /// N_n, the number of nodes.
+    /// Gives N_n, the number of nodes.
     pub fn nodes(&self) -> usize {
         self.cells.iter().map(|cells| cells + 1).product()
     }
 
-    /// The index along each axis of node I.
+    /// Gives the index along each axis of node I.
     pub fn index(&self, I: usize) -> [usize; D] {
         let mut rest = I;
         std::array::from_fn(|d| {
@@ -74,13 +74,13 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// x_I (m).
+    /// Gives x_I (m).
     pub fn position(&self, I: usize) -> SVector<f64, D> {
         let i = self.index(I);
         SVector::from_fn(|d, _| self.coordinate(d, i[d]))
     }
 
-    /// I of the node with index `i` along each axis; the first axis runs fastest.
+    /// Gives I of the node with index `i` along each axis; the first axis runs fastest.
     pub fn node(&self, i: [usize; D]) -> usize {
         let mut I = 0;
         for d in (0..D).rev() {
@@ -89,7 +89,7 @@ impl<const D: usize> Grid<D> {
         I
     }
 
-    /// The nodes whose distance from a point along each axis is at most `radius`
+    /// Lists the nodes whose distance from a point along each axis is at most `radius`
     /// cells, and the corners of its cell; the first axis runs fastest.
     pub fn around(&self, at: &Located<D>, radius: f64) -> impl Iterator<Item = [usize; D]> {
         let (mut low, mut count) = ([0; D], [0; D]);
@@ -102,12 +102,12 @@ impl<const D: usize> Grid<D> {
         odometer(count).map(move |n| std::array::from_fn(|d| low[d] + n[d]))
     }
 
-    /// The coordinate along axis d of the nodes with index i (m).
+    /// Gives the coordinate along axis d of the nodes with index i (m).
     fn coordinate(&self, d: usize, i: usize) -> f64 {
         (i as f64 - self.before[d] as f64) * self.h[d]
     }
 
-    /// The cell that holds `x` (m); `None` outside the grid or for NaN.
+    /// Finds the cell that holds `x` (m); `None` outside the grid or for NaN.
     ///
     /// A point on a face belongs to the cell above it, except on the grid's
     /// own upper face. ξ is measured from the node as a number, so that a point

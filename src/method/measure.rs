@@ -5,7 +5,7 @@ use crate::method::continuum::state::{Carriers, Particles};
 use nalgebra::SVector;
 
 // ANCHOR: rms
-/// (39) with the square that the paper's print lacks:
+/// (39), with the square that the paper's print lacks, is the root of the mean square:
 /// RMS = √(1/N Σ (φ − φ̂)²), in the unit of φ; 0 for no pairs.
 ///
 /// Test: `rms_has_its_square` in `tests/analytical.rs`.
@@ -35,7 +35,7 @@ impl std::fmt::Display for Order {
     }
 }
 
-/// The line through (ln h, ln error) by least squares; its slope with the 95%
+/// Fits the line through (ln h, ln error) by least squares; its slope with the 95%
 /// interval of Student's t for n − 2 degrees of freedom. 3 to 12 points, all
 /// above 0.
 pub fn observed_order(h: &[f64], error: &[f64]) -> Order {
@@ -62,7 +62,7 @@ pub fn observed_order(h: &[f64], error: &[f64]) -> Order {
 // ANCHOR_END: observed_order
 
 // ANCHOR: energy
-/// ½ σ_p : D⁻¹ : σ_p m_p / ρ_p (J).
+/// Gives the strain energy of particle p, ½ σ_p : D⁻¹ : σ_p m_p / ρ_p (J).
 pub fn strain_energy_of<const D: usize>(
     particle: &Particles<D>,
     law: &LinearElastic,
@@ -71,18 +71,18 @@ pub fn strain_energy_of<const D: usize>(
     law.energy_density(&particle.sigma[p]) * (particle.m[p] / particle.rho[p])
 }
 
-/// Σ ½ m |v|² (J), over particles, or over the nodes of OTM.
+/// Sums ½ m |v|² (J) over particles, or over the nodes of OTM.
 pub fn kinetic_energy<const D: usize>(Carriers { m, v, .. }: &Carriers<D>) -> f64 {
     (0..m.len()).map(|n| 0.5 * m[n] * v[n].dot(&v[n])).sum()
 }
 
-/// Σ_p of the strain energy (J).
+/// Sums the strain energy over all particles (J).
 pub fn strain_energy<const D: usize>(particle: &Particles<D>, law: &LinearElastic) -> f64 {
     (0..particle.len()).map(|p| strain_energy_of(particle, law, p)).sum()
 }
 // ANCHOR_END: energy
 
-/// Σ m (x_i v_j − x_j v_i) about the body's lower corner (kg m²/s): one
+/// Sums m (x_i v_j − x_j v_i) about the body's lower corner (kg m²/s): one
 /// number in 2D, three in 3D (for x, y, z), none in 1D.
 pub fn angular_momentum<const D: usize>(Carriers { m, x, v }: &Carriers<D>) -> Vec<f64> {
     let planes: &[(usize, usize)] = match D {
@@ -96,7 +96,7 @@ pub fn angular_momentum<const D: usize>(Carriers { m, x, v }: &Carriers<D>) -> V
     planes.iter().map(about).collect()
 }
 
-/// Σ m v (kg m/s).
+/// Sums m v (kg m/s).
 pub fn momentum<const D: usize>(Carriers { m, v, .. }: &Carriers<D>) -> SVector<f64, D> {
     let mut sum = SVector::zeros();
     for n in 0..m.len() {

@@ -11,6 +11,7 @@ pub mod exact;
 pub mod grid;
 pub mod measure;
 pub mod model;
+pub mod one_bar;
 pub mod quadrature;
 pub mod reading;
 pub mod time;

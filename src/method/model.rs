@@ -11,10 +11,10 @@ use super::cost::Cost;
 use super::grid::Grid;
 use nalgebra::{SMatrix, SVector};
 
-/// The fixed components of nodes, as pairs (I, i).
+/// Fixed components of nodes are pairs (I, i).
 pub type Fixed = [(usize, usize)];
 
-/// All that stays the same from step to step.
+/// The model is all that stays the same from step to step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model<const D: usize> {
     pub grid: Grid<D>,
@@ -32,13 +32,10 @@ pub struct Model<const D: usize> {
 }
 
 impl<const D: usize> Model<D> {
-    /// Bytes of state that one particle carries in this model.
+    /// Counts the bytes of state that one particle carries in this model.
     pub fn bytes_per_particle(&self) -> usize {
         let (vector, matrix) = (size_of::<SVector<f64, D>>(), size_of::<SMatrix<f64, D, D>>());
-        let of_basis = match self.basis {
-            Basis::Lme { .. } => vector, // λ_p
-            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline => 0,
-        };
+        let of_basis = if self.basis.has_multiplier() { vector } else { 0 };
         let of_method = match self.method {
             Method::Mpm(Integrator::GeneralizedAlpha { .. }) => vector, // a_p
             Method::Mpm(_) => 0,
@@ -48,7 +45,8 @@ impl<const D: usize> Model<D> {
     }
 }
 
-/// All that changes: particles, nodes, and the table of shape functions between them.
+/// The state is all that changes: particles, nodes, and the table of shape functions
+/// between them.
 #[derive(Clone, Debug)]
 pub struct State<const D: usize> {
     pub particle: Particles<D>,
@@ -62,7 +60,7 @@ pub struct State<const D: usize> {
 }
 
 impl<const D: usize> State<D> {
-    /// The state of `particle` before its first table, with all arrays that the model's
+    /// Makes the state of `particle` before its first table, with all arrays that the model's
     /// method, scheme and basis need. OTM brings its nodes' places `x` (m); those of MPM
     /// are the grid's.
     pub fn new(model: &Model<D>, mut particle: Particles<D>, x: Vec<SVector<f64, D>>) -> Self {
@@ -84,7 +82,7 @@ impl<const D: usize> State<D> {
                 node.x = x;
             }
         }
-        if let Basis::Lme { .. } = model.basis {
+        if model.basis.has_multiplier() {
             particle.lambda = zeros(particles);
         }
         let mass = match model.mass {
@@ -97,7 +95,7 @@ impl<const D: usize> State<D> {
         State { particle, node, shape, mass, scratch: Scratch::default(), steps: 0 }
     }
 
-    /// What carries the body's mass and motion: the particles of MPM, the nodes of OTM.
+    /// Gives what carries the body's mass and motion: the particles of MPM, the nodes of OTM.
     pub fn carriers(&self, method: Method) -> Carriers<'_, D> {
         match method {
             Method::Mpm(_) => self.particle.carriers(),
@@ -105,7 +103,7 @@ impl<const D: usize> State<D> {
         }
     }
 
-    /// What the run has cost so far.
+    /// Sums up what the run has cost so far.
     pub fn cost(&self) -> Cost {
         let steps = Cost { steps: self.steps, ..Cost::default() };
         steps + self.shape.cost + self.scratch.cost() + self.mass.cost() + self.node.cost

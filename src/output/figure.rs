@@ -1,7 +1,7 @@
 //! Pictures as SVG: histories of probes, fronts of the exact solution, errors.
 
 use crate::method::basis::lme::Failure;
-use crate::method::basis::support;
+use crate::method::basis::scattered::values_at;
 use crate::method::exact::riemann::{Bar, Family};
 use crate::run::table::Table;
 use crate::scene::{Probe, Scene};
@@ -281,7 +281,7 @@ pub fn local_max_ent(gammas: &[f64]) -> Result<String, Failure> {
             for column in 0..PIXELS {
                 let at = |n: usize| 2.5 * (2.0 * n as f64 / (PIXELS - 1) as f64 - 1.0);
                 let x = Vector2::new(at(column), -at(row));
-                let (found, _) = support::at(&nodes, 1.0, *gamma, 1e-6, &x)?;
+                let (found, _) = values_at(&nodes, 1.0, *gamma, 1e-6, &x)?;
                 let here = found.iter().find(|value| value.0 == middle);
                 line[0].push(here.map_or(0.0, |value| value.1));
                 line[1].push(here.map_or(0.0, |value| value.2[0]));

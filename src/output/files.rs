@@ -1,9 +1,10 @@
 //! Files, each complete or not there.
 
 use crate::run;
-use crate::scene::Scene;
 use crate::scene::fault::Fault;
+use crate::scene::{Scene, neither, shipped};
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// The text of a file.
@@ -13,14 +14,31 @@ pub fn text(path: &Path) -> Result<String, Fault> {
     fs::read_to_string(path).map_err(|source| Fault::Read { path: path.to_path_buf(), source })
 }
 
-/// Reads a scene file with the `KEY=VALUE` of `sets` in place of its own.
+/// The text of a scene file; where there is no such file, of the shipped scene with that
+/// name.
 ///
-/// Errors: [`Fault::Read`]; [`Fault::Scene`] with file, line, key and what is allowed.
+/// Errors: [`Fault::Read`], [`Fault::NoScene`].
+pub fn scene_text(path: &Path) -> Result<String, Fault> {
+    let shipped = path.to_str().and_then(shipped).filter(|_| !path.is_file());
+    match (shipped, text(path)) {
+        (Some(scene), _) => Ok(scene.text.to_string()),
+        (None, Err(Fault::Read { source, .. })) if source.kind() == ErrorKind::NotFound => {
+            Err(neither(path, source))
+        }
+        (None, text) => text,
+    }
+}
+
+/// Reads a scene, a file or a shipped one, with the `KEY=VALUE` of `sets` in place of its
+/// own.
+///
+/// Errors: those of [`scene_text`]; [`Fault::Scene`] with file, line, key and what is
+/// allowed.
 pub fn scene(path: &Path, sets: &[String]) -> Result<Scene, Fault> {
     let stem = path.file_stem().map_or("".into(), |stem| stem.to_string_lossy());
     // A name that is no name for a directory of results.
     let name = if stem.trim_matches('.').is_empty() { "scene".into() } else { stem };
-    Ok(run::parse(&name, &path.display().to_string(), &text(path)?, sets)?)
+    Ok(run::parse(&name, &path.display().to_string(), &scene_text(path)?, sets)?)
 }
 
 /// Writes all `files` into `dir`, each complete or not at all, and removes the

@@ -1,9 +1,9 @@
 //! What a difference usually comes from, and where the book tells more.
 
-use super::entry::{Entry, Place, SYMBOLS, place};
+use super::entry::{Address, Entry, SYMBOLS, address};
 use std::collections::HashMap;
 
-/// Equation and place in the book, by symbol and, in Newmark's scheme, by step.
+/// Gives the equation and its place in the book, by symbol and, in Newmark's scheme, by step.
 pub fn source(entry: &Entry) -> (&'static str, &'static str) {
     match (entry.symbol, entry.step) {
         ("x_p" | "v_p", 0) => ("the start", "dyka-bar.html"),
@@ -20,20 +20,20 @@ pub fn source(entry: &Entry) -> (&'static str, &'static str) {
     }
 }
 
-/// Two traces, to look things up.
+/// Things are looked up in two traces.
 pub struct Traces<'a> {
-    pub reference: &'a HashMap<Place, f64>,
-    pub theirs: &'a HashMap<Place, f64>,
+    pub reference: &'a HashMap<Address, f64>,
+    pub theirs: &'a HashMap<Address, f64>,
 }
 
 impl Traces<'_> {
-    /// The reference's value at the place of `entry`, for another symbol, step or index.
+    /// Gives the reference's value at the place of `entry`, for another symbol, step or index.
     fn at(&self, entry: &Entry) -> Option<f64> {
-        self.reference.get(&place(entry)).copied()
+        self.reference.get(&address(entry)).copied()
     }
 
     fn theirs_at(&self, entry: &Entry) -> Option<f64> {
-        self.theirs.get(&place(entry)).copied()
+        self.theirs.get(&address(entry)).copied()
     }
 }
 
@@ -41,7 +41,7 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-6 * a.abs().max(b.abs())
 }
 
-/// The likely cause of a difference at `entry`, where the port has `theirs`.
+/// Gives the likely cause of a difference at `entry`, where the port has `theirs`.
 pub fn of(entry: &Entry, theirs: f64, reference: &[Entry], traces: Traces) -> Option<&'static str> {
     let by_value = if entry.step == 0 { None } else { value_tells(entry, theirs, reference) };
     by_value.or_else(|| numbering(entry, theirs, &traces)).or_else(|| match entry.node {
@@ -54,7 +54,7 @@ pub fn of(entry: &Entry, theirs: f64, reference: &[Entry], traces: Traces) -> Op
     })
 }
 
-/// Causes that show in the two values: a fixed node, a sign.
+/// Finds causes that show in the two values: a fixed node, a sign.
 fn value_tells(entry: &Entry, theirs: f64, reference: &[Entry]) -> Option<&'static str> {
     let value = entry.value;
     let kept = value == 0.0 && ["v_I", "f_I", "p_I_advanced"].contains(&entry.symbol);
@@ -87,7 +87,7 @@ fn is_fixed(entry: &Entry, reference: &[Entry]) -> bool {
     (some("p_I") && !some("v_I")) || (some("f_int_I") && !some("f_I"))
 }
 
-/// Particles or nodes that are counted from 1, or nodes from another end.
+/// Finds particles or nodes that are counted from 1, or nodes from another end.
 fn numbering(entry: &Entry, theirs: f64, traces: &Traces) -> Option<&'static str> {
     let Some(node) = entry.node else {
         // This value and the next are their neighbours' in the reference.
@@ -109,7 +109,7 @@ fn numbering(entry: &Entry, theirs: f64, traces: &Traces) -> Option<&'static str
     beside.into_iter().any(moved).then_some("nodes are numbered off by one")
 }
 
-/// Shape functions and gradients.
+/// Finds causes of shape functions and gradients.
 fn pair(entry: &Entry, reference: &[Entry]) -> Option<&'static str> {
     let max_ent = reference.iter().any(|e| e.symbol == "lambda");
     Some(match (entry.symbol, max_ent) {
@@ -128,7 +128,7 @@ fn pair(entry: &Entry, reference: &[Entry]) -> Option<&'static str> {
     })
 }
 
-/// What a symbol usually suffers from.
+/// Says what a symbol usually suffers from: one table, which is why this function is long.
 fn symbol_tells(entry: &Entry, theirs: f64) -> Option<&'static str> {
     Some(match (entry.symbol, entry.step) {
         ("dt", _) => "Δt = T/n, n the next whole number from T c/(CFL h) up",

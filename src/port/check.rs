@@ -2,13 +2,13 @@
 //! order.
 
 use super::cause::{self, Traces};
-use super::entry::{COLUMNS, Entry, PAIRS, Place, SYMBOLS, number, place};
+use super::entry::{Address, COLUMNS, Entry, PAIRS, SYMBOLS, address, number};
 use super::rows::{self, Rows, brief};
 use crate::scene::fault::Fault;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::io::Read;
 
-/// How far two numbers may be apart: `relative` times the larger of them, plus
+/// A tolerance says how far two numbers may be apart: `relative` times the larger of them, plus
 /// `absolute` times the largest value that the symbol has in its time step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
@@ -16,7 +16,7 @@ pub struct Tolerance {
     pub absolute: f64,
 }
 
-/// The first number that differs.
+/// This is the first number that differs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Divergence {
     pub reference: Entry,
@@ -29,7 +29,7 @@ pub struct Divergence {
     pub cause: Option<&'static str>,
 }
 
-/// What a comparison found.
+/// A report says what a comparison found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     pub compared: usize,
@@ -42,14 +42,14 @@ pub struct Report {
     pub extra: usize,
 }
 
-/// All numbers of a particle or node that one step makes of a symbol.
-type Row = (usize, usize, &'static str, usize);
+/// A row is all numbers of a particle or node that one step makes of a symbol.
+type RowPlace = (usize, usize, &'static str, usize);
 
-fn row(entry: &Entry) -> Row {
+fn row(entry: &Entry) -> RowPlace {
     (entry.k, entry.step, entry.symbol, entry.index)
 }
 
-/// What a port has printed.
+/// This is what a port has printed.
 #[derive(Clone, Debug)]
 pub struct Printed {
     name: String,
@@ -59,7 +59,7 @@ pub struct Printed {
 }
 
 impl Printed {
-    /// The line of entry `n`, if it was ever in a file.
+    /// Gives the line of entry `n`, if it was ever in a file.
     fn line(&self, n: usize) -> Option<u64> {
         self.lines.get(n).copied()
     }
@@ -87,8 +87,8 @@ pub fn read(name: &str, input: impl Read) -> Result<Printed, Fault> {
     let wanted = format!("the columns {}", COLUMNS.join(","));
     let mut rows = Rows::of(name, &text, wanted)?;
     let mut at = [0; COLUMNS.len()];
-    for (place, column) in at.iter_mut().zip(COLUMNS) {
-        *place = rows
+    for (at, column) in at.iter_mut().zip(COLUMNS) {
+        *at = rows
             .header
             .iter()
             .position(|found| found == column)
@@ -96,34 +96,9 @@ pub fn read(name: &str, input: impl Read) -> Result<Printed, Fault> {
     }
     let (mut entries, mut lines, mut seen) = (Vec::new(), Vec::new(), HashMap::new());
     while let Some((line, record)) = rows.next_row()? {
-        let cell = |n: usize| record.get(at[n]).unwrap_or("");
         let fault = |problem: String, allowed: String| rows.fault(line, problem, allowed);
-        let whole = |n: usize| {
-            cell(n).parse::<usize>().map_err(|_| {
-                let problem = format!("`{}` is not a value of {}", brief(cell(n)), COLUMNS[n]);
-                fault(problem, "a whole number from 0 up".into())
-            })
-        };
-        let symbol = SYMBOLS.iter().map(|symbol| symbol.0).find(|name| *name == cell(2));
-        let symbol = symbol.ok_or_else(|| {
-            let names: Vec<&str> = SYMBOLS.iter().map(|symbol| symbol.0).collect();
-            fault(format!("`{}` is not a symbol", brief(cell(2))), names.join(", "))
-        })?;
-        let value = number(cell(6)).filter(|x| x.is_finite()).ok_or_else(|| {
-            let problem = format!("`{}` is not a value of {symbol}", brief(cell(6)));
-            fault(problem, "a finite number, decimal or hexadecimal".into())
-        })?;
-        let node = match (PAIRS.contains(&symbol), cell(4)) {
-            (true, _) => Some(whole(4)?),
-            (false, "") => None,
-            (false, node) => {
-                let problem = format!("{symbol} is not a pair, and has the node `{}`", brief(node));
-                return Err(fault(problem, "an empty cell for the node".into()));
-            }
-        };
-        let (k, step, index, component) = (whole(0)?, whole(1)?, whole(3)?, whole(5)?);
-        let entry = Entry { k, step, symbol, index, node, component, value };
-        if let Some(before) = seen.insert(place(&entry), line) {
+        let entry = entry(&at.map(|n| record.get(n).unwrap_or("")), &fault)?;
+        if let Some(before) = seen.insert(address(&entry), line) {
             let problem = format!("the same number stands in line {before} already");
             return Err(fault(problem, "each number once".into()));
         }
@@ -133,7 +108,42 @@ pub fn read(name: &str, input: impl Read) -> Result<Printed, Fault> {
     Ok(Printed { name: name.to_string(), entries, lines })
 }
 
-/// Numbers between a and b, counted as steps of the last bit.
+/// Reads the entry of one line, whose cells stand in the order of [`COLUMNS`]; `fault` makes the
+/// fault of this line from what is wrong and what is allowed.
+fn entry(
+    cells: &[&str; COLUMNS.len()],
+    fault: &dyn Fn(String, String) -> Fault,
+) -> Result<Entry, Fault> {
+    let [k, step, symbol, index, node, component, value] = *cells;
+    let whole = |column: &str, text: &str| {
+        text.parse::<usize>().map_err(|_| {
+            let problem = format!("`{}` is not a value of {column}", brief(text));
+            fault(problem, "a whole number from 0 up".into())
+        })
+    };
+    let names = || SYMBOLS.iter().map(|symbol| symbol.0);
+    let symbol = names().find(|name| *name == symbol).ok_or_else(|| {
+        let problem = format!("`{}` is not a symbol", brief(symbol));
+        fault(problem, names().collect::<Vec<_>>().join(", "))
+    })?;
+    let value = number(value).filter(|x| x.is_finite()).ok_or_else(|| {
+        let problem = format!("`{}` is not a value of {symbol}", brief(value));
+        fault(problem, "a finite number, decimal or hexadecimal".into())
+    })?;
+    let node = match (PAIRS.contains(&symbol), node) {
+        (true, _) => Some(whole("node", node)?),
+        (false, "") => None,
+        (false, node) => {
+            let problem = format!("{symbol} is not a pair, and has the node `{}`", brief(node));
+            return Err(fault(problem, "an empty cell for the node".into()));
+        }
+    };
+    let (k, step) = (whole("k", k)?, whole("step", step)?);
+    let (index, component) = (whole("index", index)?, whole("component", component)?);
+    Ok(Entry { k, step, symbol, index, node, component, value })
+}
+
+/// Counts the numbers between a and b, as steps of the last bit.
 pub fn ulps(a: f64, b: f64) -> u64 {
     // Ordered like the numbers: negative ones mirrored.
     let order = |x: f64| {
@@ -159,84 +169,75 @@ pub fn compare(
     tolerance: Tolerance,
     part: bool,
 ) -> Result<Report, Fault> {
-    let mut scales: HashMap<(usize, &str), f64> = HashMap::new();
-    for entry in reference {
-        let scale = scales.entry((entry.k, entry.symbol)).or_insert(0.0);
-        *scale = scale.max(entry.value.abs());
-    }
     let (given, own) = (by_place(reference), Own::new(theirs));
-    let (reference, extra) = with_unseen_nodes(reference, &given, theirs);
+    let (all, extra) = with_unseen_nodes(reference, &given, theirs);
     let mut report = Report {
         compared: 0,
         divergence: None,
         missing: BTreeMap::new(),
-        missing_steps: reference.iter().map(|entry| entry.k).collect(),
+        missing_steps: all.iter().map(|entry| entry.k).collect(),
         extra: extra.len(),
     };
-    let (mut first, mut gap) = (None, None);
-    for entry in &reference {
-        let Some(value) = own.value(entry) else {
-            gap = gap.or(Some(entry).filter(|_| own.has_symbol(entry)));
-            *report.missing.entry(entry.symbol).or_insert(0) += 1;
-            continue;
-        };
-        report.compared += 1;
-        report.missing_steps.remove(&entry.k);
-        let size = entry.value.abs().max(value.abs());
-        let scale = scales.get(&(entry.k, entry.symbol)).copied().unwrap_or(0.0);
-        let room = tolerance.relative * size + tolerance.absolute * scale;
-        if first.is_none() && (value - entry.value).abs() > room {
-            first = Some((entry, value));
-        }
-    }
+    let (first, gap) = report.walk(&all, &own, &scales(reference), tolerance);
     if let Some((entry, value)) = first {
+        let traces = Traces { reference: &given, theirs: &own.values };
         report.divergence = Some(Divergence {
             reference: entry.clone(),
             theirs: value,
             line: own.line(entry),
             ulps: ulps(entry.value, value),
-            cause: cause::of(
-                entry,
-                value,
-                &reference,
-                Traces { reference: &given, theirs: &own.values },
-            ),
+            cause: cause::of(entry, value, &all, traces),
         });
         return Ok(report);
     }
-    match (extra.first(), gap) {
-        (Some(n), _) if !part => {
-            let entry = spelled(&theirs.entries[*n]);
-            let problem = format!("there is {entry}, which the reference has not");
-            Err(theirs.alone(theirs.line(*n), problem))
-        }
-        (_, Some(entry)) if !part => {
-            let problem = format!("there is no {}, but others of its kind", spelled(entry));
-            Err(theirs.alone(None, problem))
-        }
-        _ if report.compared == 0 => {
+    match alone(theirs, extra.first().copied(), gap).filter(|_| !part) {
+        Some(fault) => Err(fault),
+        None if report.compared == 0 => {
             Err(theirs.alone(None, "it has nothing that the reference has".into()))
         }
-        _ => Ok(report),
+        None => Ok(report),
     }
 }
 // ANCHOR_END: compare
 
-fn by_place(entries: &[Entry]) -> HashMap<Place, f64> {
-    entries.iter().map(|entry| (place(entry), entry.value)).collect()
+/// Names a number that only one of two traces has: entry `extra` of `theirs`, or
+/// the reference's `gap`.
+fn alone(theirs: &Printed, extra: Option<usize>, gap: Option<&Entry>) -> Option<Fault> {
+    let too_much = extra.map(|n| {
+        let entry = spelled(&theirs.entries[n]);
+        theirs.alone(theirs.line(n), format!("there is {entry}, which the reference has not"))
+    });
+    too_much.or_else(|| {
+        let problem = format!("there is no {}, but others of its kind", spelled(gap?));
+        Some(theirs.alone(None, problem))
+    })
 }
 
-/// What a port has printed, to look things up.
+/// Finds the largest size that each symbol has in each time step.
+fn scales(entries: &[Entry]) -> HashMap<(usize, &str), f64> {
+    let mut scales = HashMap::new();
+    for entry in entries {
+        let scale: &mut f64 = scales.entry((entry.k, entry.symbol)).or_insert(0.0);
+        *scale = scale.max(entry.value.abs());
+    }
+    scales
+}
+
+fn by_place(entries: &[Entry]) -> HashMap<Address, f64> {
+    entries.iter().map(|entry| (address(entry), entry.value)).collect()
+}
+
+/// Things that a port has printed are looked up here.
 struct Own<'a> {
-    values: HashMap<Place, f64>,
-    lines: HashMap<Place, u64>,
-    rows: HashSet<Row>,
+    values: HashMap<Address, f64>,
+    lines: HashMap<Address, u64>,
+    rows: HashSet<RowPlace>,
     symbols: HashSet<(usize, usize, &'a str)>,
 }
 
 impl<'a> Own<'a> {
     fn new(theirs: &'a Printed) -> Self {
-        let places = || theirs.entries.iter().map(place);
+        let places = || theirs.entries.iter().map(address);
         Own {
             values: by_place(&theirs.entries),
             lines: places().zip(theirs.lines.iter().copied()).collect(),
@@ -245,14 +246,14 @@ impl<'a> Own<'a> {
         }
     }
 
-    /// Its value; 0 for a node that is not among those of its particle.
+    /// Gives its value; 0 for a node that is not among those of its particle.
     fn value(&self, entry: &Entry) -> Option<f64> {
         let unseen = || (entry.node.is_some() && self.rows.contains(&row(entry))).then_some(0.0);
-        self.values.get(&place(entry)).copied().or_else(unseen)
+        self.values.get(&address(entry)).copied().or_else(unseen)
     }
 
     fn line(&self, entry: &Entry) -> Option<u64> {
-        self.lines.get(&place(entry)).copied()
+        self.lines.get(&address(entry)).copied()
     }
 
     fn has_symbol(&self, entry: &Entry) -> bool {
@@ -260,17 +261,18 @@ impl<'a> Own<'a> {
     }
 }
 
-/// The reference in the paper's order, with a 0 for every node that only `theirs` has
+/// Puts the reference into the paper's order, with a 0 for every node that only `theirs` has
 /// at a particle; and which entries else only `theirs` has.
 fn with_unseen_nodes(
     reference: &[Entry],
-    given: &HashMap<Place, f64>,
+    given: &HashMap<Address, f64>,
     theirs: &Printed,
 ) -> (Vec<Entry>, Vec<usize>) {
-    let rows: HashSet<(Row, usize)> = reference.iter().map(|e| (row(e), e.component)).collect();
+    let rows: HashSet<(RowPlace, usize)> =
+        reference.iter().map(|e| (row(e), e.component)).collect();
     let (mut all, mut extra) = (reference.to_vec(), Vec::new());
     for (n, entry) in theirs.entries.iter().enumerate() {
-        if given.contains_key(&place(entry)) {
+        if given.contains_key(&address(entry)) {
             continue;
         }
         if entry.node.is_some() && rows.contains(&(row(entry), entry.component)) {
@@ -284,7 +286,7 @@ fn with_unseen_nodes(
     (all, extra)
 }
 
-/// Where an entry stands, in words.
+/// Says in words where an entry stands.
 fn spelled(entry: &Entry) -> String {
     let Entry { k, step, symbol, index, node, component, .. } = entry;
     let node = node.map_or(String::new(), |node| format!(", node {node}"));
@@ -292,7 +294,36 @@ fn spelled(entry: &Entry) -> String {
 }
 
 impl Report {
-    /// The report for a reader; `reference` and `theirs` are the files.
+    /// Goes through the reference `all` and counts what is there; returns the first
+    /// entry that differs, with the port's value, and the first that is missing among
+    /// others of its symbol.
+    fn walk<'a>(
+        &mut self,
+        all: &'a [Entry],
+        own: &Own,
+        scales: &HashMap<(usize, &str), f64>,
+        tolerance: Tolerance,
+    ) -> (Option<(&'a Entry, f64)>, Option<&'a Entry>) {
+        let (mut first, mut gap) = (None, None);
+        for entry in all {
+            let Some(value) = own.value(entry) else {
+                gap = gap.or(Some(entry).filter(|_| own.has_symbol(entry)));
+                *self.missing.entry(entry.symbol).or_insert(0) += 1;
+                continue;
+            };
+            self.compared += 1;
+            self.missing_steps.remove(&entry.k);
+            let size = entry.value.abs().max(value.abs());
+            let scale = scales.get(&(entry.k, entry.symbol)).copied().unwrap_or(0.0);
+            let room = tolerance.relative * size + tolerance.absolute * scale;
+            if first.is_none() && (value - entry.value).abs() > room {
+                first = Some((entry, value));
+            }
+        }
+        (first, gap)
+    }
+
+    /// Writes the report for a reader; `reference` and `theirs` are the files.
     pub fn text(&self) -> String {
         let mut text = match &self.divergence {
             None => {

@@ -9,7 +9,7 @@ use crate::run::table;
 use crate::scene::fault::Fault;
 use nalgebra::{SMatrix, SVector};
 
-/// One number of a trace.
+/// An entry is one number of a trace.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// The time step, 0 for the start.
@@ -27,19 +27,19 @@ pub struct Entry {
     pub value: f64,
 }
 
-/// Where an entry stands in a trace: k, step, symbol, index, node, component.
-pub type Place = (usize, usize, &'static str, usize, Option<usize>, usize);
+/// An address says where an entry stands in a trace: k, step, symbol, index, node, component.
+pub type Address = (usize, usize, &'static str, usize, Option<usize>, usize);
 
-/// The place of an entry.
-pub fn place(entry: &Entry) -> Place {
+/// Gives the address of an entry.
+pub fn address(entry: &Entry) -> Address {
     let Entry { k, step, symbol, index, node, component, .. } = *entry;
     (k, step, symbol, index, node, component)
 }
 
-/// Columns of a trace.
+/// A trace has these columns.
 pub const COLUMNS: [&str; 7] = ["k", "step", "symbol", "index", "node", "component", "value"];
 
-/// Symbols in the paper's order, with the equation, what it is, and the place in the
+/// Symbols stand in the paper's order, with the equation, what it is, and the place in the
 /// book.
 pub const SYMBOLS: [(&str, &str, &str); 29] = [
     ("dt", "T/n", "algorithm.html#time-step"),
@@ -74,25 +74,25 @@ pub const SYMBOLS: [(&str, &str, &str); 29] = [
     ("u", "(59) integrated", "riemann.html#eq-59"),
 ];
 
-/// Symbols that belong to a particle and a node; all others leave the node out.
+/// These symbols belong to a particle and a node; all others leave the node out.
 pub const PAIRS: [&str; 2] = ["N_Ip", "grad_N_Ip"];
 
-/// Writes entries of one step of one time step.
+/// A recorder writes entries of one step of one time step.
 #[derive(Default)]
-pub struct Recorder {
+pub struct TraceRecorder {
     pub entries: Vec<Entry>,
     k: usize,
     step: usize,
 }
 
-impl Recorder {
-    /// What follows is of step `step` of time step `k`.
+impl TraceRecorder {
+    /// Says that what follows is of step `step` of time step `k`.
     pub fn at(&mut self, k: usize, step: usize) -> &mut Self {
         (self.k, self.step) = (k, step);
         self
     }
 
-    /// That what this time step has written down are numbers.
+    /// Checks that what this time step has written down are numbers.
     ///
     /// Errors: [`Breakdown::NodeNotFinite`], [`Breakdown::NotFinite`].
     pub(super) fn finite(&self) -> Result<(), Breakdown> {
@@ -107,7 +107,7 @@ impl Recorder {
         })
     }
 
-    /// What `symbol` has become in a state; loads are those of `t` (s).
+    /// Writes what `symbol` has become in a state; loads are those of `t` (s).
     pub(super) fn symbol<const D: usize>(
         &mut self,
         symbol: &'static str,
@@ -118,7 +118,10 @@ impl Recorder {
         match symbol {
             "N_Ip" => self.shapes(shape),
             "grad_N_Ip" => self.gradients(shape),
-            "lambda" => self.multipliers(&particle.lambda, &model.grid.h),
+            "lambda" if model.basis.has_multiplier() => {
+                self.multipliers(&particle.lambda, &model.grid.h);
+            }
+            "lambda" => {}
             "m_I" => self.numbers(symbol, &node.m),
             "p_I" | "p_I_advanced" => self.vectors(symbol, &node.p),
             "v_I" => self.vectors(symbol, &node.v),
@@ -151,7 +154,7 @@ impl Recorder {
         self.entries.push(Entry { k, step, symbol, index, node: None, component, value });
     }
 
-    /// The components of a vector, or of a tensor by rows.
+    /// Writes the components of a vector, or of a tensor by rows.
     pub fn components(&mut self, symbol: &'static str, index: usize, values: &[f64]) {
         for (component, value) in values.iter().enumerate() {
             self.number(symbol, index, component, *value);
@@ -193,14 +196,14 @@ impl Recorder {
         self.entries.push(Entry { k, step, symbol, index: p, node, component, value });
     }
 
-    /// N_Ip.
+    /// Writes N_Ip.
     pub fn shapes<const D: usize>(&mut self, shape: &Shape<D>) {
         for (I, p, N_Ip, _) in shape.pairs() {
             self.pair("N_Ip", p, I, 0, N_Ip);
         }
     }
 
-    /// ∇N_Ip (1/m).
+    /// Writes ∇N_Ip (1/m).
     pub fn gradients<const D: usize>(&mut self, shape: &Shape<D>) {
         for (I, p, _, grad_N_Ip) in shape.pairs() {
             for (component, value) in grad_N_Ip.iter().enumerate() {
@@ -209,14 +212,14 @@ impl Recorder {
         }
     }
 
-    /// λ_p (1/m) from `lambda` = λ_p h.
+    /// Writes λ_p (1/m) from `lambda` = λ_p h.
     pub fn multipliers<const D: usize>(&mut self, lambda: &[SVector<f64, D>], h: &SVector<f64, D>) {
         let lambda: Vec<SVector<f64, D>> = lambda.iter().map(|l| l.component_div(h)).collect();
         self.vectors("lambda", &lambda);
     }
 }
 
-/// A number as C's `%a` writes it, exact in every digit.
+/// Writes a number as C's `%a` does, exact in every digit.
 pub fn hex(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");
@@ -252,7 +255,7 @@ pub fn number(text: &str) -> Option<f64> {
     Some(sign * libm::ldexp(mantissa, exponent))
 }
 
-/// A trace as CSV; numbers in the shortest decimal that reads back the same, or in
+/// Writes a trace as CSV; numbers in the shortest decimal that reads back the same, or in
 /// hexadecimal.
 pub fn csv(entries: &[Entry], in_hex: bool) -> Result<Vec<u8>, Fault> {
     let line = |entry: &Entry| {

@@ -1,7 +1,7 @@
 //! CSV of points in, CSV of values out: the commands `exact` and `shape`.
 
 use super::rows::{self, Rows};
-use crate::method::basis::support::{self, Values};
+use crate::method::basis::scattered::{Values, values_at};
 use crate::method::basis::{self, Basis, Scratch};
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
@@ -13,7 +13,7 @@ use crate::setup;
 use nalgebra::SVector;
 use std::io::Read;
 
-/// Points read from CSV: the columns found, and one row for each line.
+/// Points are read from CSV: the columns found, and one row for each line.
 pub struct Points {
     name: String,
     rows: Vec<(u64, Vec<f64>)>,
@@ -57,7 +57,7 @@ impl Points {
         Ok(Points { name: name.to_string(), rows })
     }
 
-    /// Number of coordinates of each point.
+    /// Counts the coordinates of each point.
     fn dimension(&self) -> usize {
         self.rows.first().map_or(0, |(_, row)| row.len())
     }
@@ -66,14 +66,14 @@ impl Points {
         self.rows.iter().map(|(_, row)| SVector::from_fn(|d, _| row[d])).collect()
     }
 
-    /// The fault `problem` in the line of point `n`.
+    /// Makes the fault `problem` in the line of point `n`.
     fn fault(&self, n: usize, problem: String, allowed: String) -> Fault {
         let line = self.rows.get(n).map_or(1, |(line, _)| *line);
         Fault::Points { path: self.name.clone(), line, problem, allowed }
     }
 }
 
-/// `x,t` → `x,t,velocity,stress,displacement` of the scene's exact solution; x
+/// Turns `x,t` into `x,t,velocity,stress,displacement` of the scene's exact solution; x
 /// in the scene's coordinates, at t = 0.
 ///
 /// Errors: [`Fault::NoExact`]; [`Fault::Points`] with the line of the first
@@ -104,10 +104,10 @@ pub fn exact_at(scene: &Scene, name: &str, input: impl Read) -> Result<Vec<u8>, 
     csv(&["x", "t", "velocity", "stress", "displacement"], rows.into_iter())
 }
 
-/// Coordinates of nodes and of points for `shape`.
+/// Nodes and points for `shape` have these coordinates.
 pub const COORDINATES: [&[&str]; 3] = [&["x"], &["x", "y"], &["x", "y", "z"]];
 
-/// `point,node,N,dN_dx[,dN_dy[,dN_dz]]` of a basis with the given nodes and
+/// Writes `point,node,N,dN_dx[,dN_dy[,dN_dz]]` of a basis with the given nodes and
 /// spacing (m), points and nodes counted from 0, nodes outside the support left
 /// out. `half_length` of [`Basis::Ugimp`] is in units of the spacing.
 ///
@@ -149,7 +149,7 @@ fn shape_in<const D: usize>(
     let mut rows = Vec::new();
     for (n, x) in points.vectors::<D>().iter().enumerate() {
         let values = match (basis, &grid) {
-            (Basis::Lme { gamma, cutoff }, _) => support::at(&place, spacing, *gamma, *cutoff, x)
+            (Basis::Lme { gamma, cutoff }, _) => values_at(&place, spacing, *gamma, *cutoff, x)
                 .map(|(values, _)| values)
                 .map_err(|failure| {
                     let allowed =
@@ -175,7 +175,7 @@ fn shape_in<const D: usize>(
     csv(&columns[..3 + D], rows.into_iter())
 }
 
-/// A regular grid and the node of the file at each of its places.
+/// A regular grid knows the node of the file at each of its places.
 struct Regular<const D: usize> {
     grid: Grid<D>,
     lowest: SVector<f64, D>,
@@ -192,7 +192,7 @@ impl<const D: usize> Regular<D> {
     }
 }
 
-/// The grid that the nodes form: all places of a box, each taken once.
+/// Finds the grid that the nodes form: all places of a box, each taken once.
 fn regular_grid<const D: usize>(
     spacing: f64,
     nodes: &Points,

@@ -4,7 +4,7 @@ use crate::scene::fault::Fault;
 use csv::StringRecord;
 use std::io::Read;
 
-/// All of `input`.
+/// Reads all of `input`.
 ///
 /// Errors: [`Fault::Read`].
 pub fn text(name: &str, mut input: impl Read) -> Result<Vec<u8>, Fault> {
@@ -15,7 +15,7 @@ pub fn text(name: &str, mut input: impl Read) -> Result<Vec<u8>, Fault> {
     }
 }
 
-/// The rows of a CSV file, one after the other.
+/// The rows of a CSV file come one after the other.
 pub struct Rows<'a> {
     name: &'a str,
     /// What a header line may be, for errors.
@@ -49,7 +49,7 @@ impl<'a> Rows<'a> {
         Ok(rows)
     }
 
-    /// The next row with its line, `None` behind the last.
+    /// Gives the next row with its line, `None` behind the last.
     ///
     /// Errors: [`Fault::Points`]: bytes that are not UTF-8, more or fewer cells than
     /// the header has, a cell that goes on in the next line.
@@ -70,25 +70,25 @@ impl<'a> Rows<'a> {
         Ok(Some((line, record)))
     }
 
-    /// A fault in a line of this file.
+    /// Makes a fault in a line of this file.
     pub fn fault(&self, line: u64, problem: String, allowed: String) -> Fault {
         Fault::Points { path: self.name.to_string(), line, problem, allowed }
     }
 
-    /// The fault of a header that does not have the right columns.
+    /// Makes the fault of a header that does not have the right columns.
     pub fn no_header(&self, problem: String) -> Fault {
         self.fault(1, problem, self.wanted.clone())
     }
 }
 
-/// The beginning of a text that may be long, in one line.
+/// Gives the beginning of a text that may be long, in one line.
 pub fn brief(text: &str) -> String {
     let line = text.lines().next().unwrap_or("");
     let start: String = line.chars().take(40).collect();
     if start.len() < text.len() { start + "…" } else { start }
 }
 
-/// What is wrong, without the place, which is named by line.
+/// Says what is wrong, without the place, which is named by line.
 fn plain(error: &csv::Error) -> String {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
@@ -99,7 +99,7 @@ fn plain(error: &csv::Error) -> String {
     }
 }
 
-/// Counts lines up to a place in a text; places must ascend.
+/// This counts lines up to a place in a text; places must ascend.
 struct Lines<'a> {
     text: &'a [u8],
     at: usize,
@@ -107,7 +107,7 @@ struct Lines<'a> {
 }
 
 impl Lines<'_> {
-    /// The line of the first row that begins at byte `start` or, behind the ends of
+    /// Gives the line of the first row that begins at byte `start` or, behind the ends of
     /// lines that stand there, after it. A line ends with \n, \r or both.
     fn of(&mut self, start: u64) -> u64 {
         while let Some(byte) = self.text.get(self.at) {

@@ -13,9 +13,9 @@ use crate::scene::Scene;
 use crate::scene::fault::Fault;
 use crate::setup;
 
-pub use super::entry::{COLUMNS, Entry, PAIRS, Recorder, SYMBOLS, csv, hex, number};
+pub use super::entry::{COLUMNS, Entry, PAIRS, SYMBOLS, TraceRecorder, csv, hex, number};
 
-/// That a trace of `steps` steps has an end in sight.
+/// Checks that a trace of `steps` steps has an end in sight.
 ///
 /// Errors: [`Fault::Argument`] for more steps than the scene has, or more numbers than
 /// a trace may hold.
@@ -37,7 +37,7 @@ pub fn affordable(scene: &Scene, steps: usize) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Some gigabytes.
+/// So many numbers take some gigabytes.
 const MOST_NUMBERS: f64 = 3e7;
 
 /// Runs the first `steps` steps of a scene and returns everything that they made.
@@ -51,14 +51,14 @@ pub fn trace(scene: &Scene, steps: usize) -> Result<Vec<Entry>, BrokenDown> {
     }
 }
 
-/// The same with the state at the end.
+/// Does the same and returns the state at the end, too.
 pub fn trace_in<const D: usize>(
     scene: &Scene,
     steps: usize,
 ) -> Result<(Vec<Entry>, State<D>), BrokenDown> {
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
-    let mut recorder = Recorder::default();
+    let mut recorder = TraceRecorder::default();
     recorder.numbers("dt", &[model.dt]);
     recorder.vectors("x_p", &state.particle.x);
     recorder.vectors("v_p", &state.particle.v);
@@ -84,7 +84,8 @@ pub fn trace_in<const D: usize>(
     Ok((recorder.entries, state))
 }
 
-/// The symbols that step `n` of a method makes, in the paper's order.
+/// Lists the symbols that step `n` of a method makes, in the paper's order: one table, which is
+/// why this function is long.
 fn made_by(method: Method, n: usize) -> &'static [&'static str] {
     const TABLE: &[&str] = &["N_Ip", "grad_N_Ip", "lambda"];
     const FORCES: &[&str] = &["f_int_I", "f_ext_I", "f_I"];

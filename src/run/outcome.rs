@@ -3,8 +3,9 @@
 use super::table::Table;
 use crate::method::breakdown::BrokenDown;
 use crate::method::cost::Cost;
+use thiserror::Error;
 
-/// What a run gives.
+/// A finished run gives this.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// One row for each recorded step.
@@ -18,7 +19,7 @@ pub struct Outcome {
     pub dt: f64,
 }
 
-/// The particles at one time.
+/// A frame holds the particles at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// (s).
@@ -27,8 +28,9 @@ pub struct Frame {
     pub particles: Table,
 }
 
-/// A run that broke down, with all that it had recorded.
-#[derive(Clone, Debug, PartialEq)]
+/// A run that broke down stops with all that it had recorded.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{broken}")]
 pub struct Stopped {
     pub broken: BrokenDown,
     pub history: Table,

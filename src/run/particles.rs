@@ -8,12 +8,13 @@ use nalgebra::SVector;
 
 const AXIS: [&str; 3] = ["x", "y", "z"];
 
-/// `name` where there is one axis; `name_x`, `name_y` or `name_z` where there are more.
+/// Names a component: `name` where there is one axis; `name_x`, `name_y` or `name_z` where
+/// there are more.
 pub fn per_axis(name: &str, axes: usize, i: usize) -> String {
     if axes == 1 { name.to_string() } else { format!("{name}_{}", AXIS[i]) }
 }
 
-/// `particles.csv`: every particle in the scene's own coordinates at time `t`; its
+/// Makes the table of every particle in the scene's own coordinates at time `t`; its
 /// `reference` (m) is where it stood at t = 0.
 pub fn table<const D: usize>(
     scene: &Scene,

@@ -17,7 +17,7 @@ use nalgebra::SVector;
 /// elastic body keeps it near 1 or below.
 const BLOW_UP: f64 = 10.0;
 
-/// Writes the history.
+/// The recorder writes the history.
 pub struct Recorder<'a, const D: usize> {
     pub history: Table,
     /// The particles at the recorded steps, if asked for.
@@ -35,7 +35,7 @@ pub struct Recorder<'a, const D: usize> {
     reference: Vec<SVector<f64, D>>,
 }
 
-/// The work of the loads so far.
+/// This is the work of the loads so far.
 struct LoadWork<const D: usize> {
     sum: f64,
     /// The same without signs, what the loads have moved to and fro (J).
@@ -116,9 +116,9 @@ impl<'a, const D: usize> Recorder<'a, D> {
         Ok(())
     }
 
-    /// `step`, `t`, energies and, with loads, their work (J), momentum (kg m/s), from
-    /// 2D on angular momentum (kg m²/s), and each probe followed by its
-    /// exact value where the scene has an exact solution.
+    /// Writes a row: `step`, `t`, energies and, with loads, their work (J), momentum (kg
+    /// m/s), from 2D on angular momentum (kg m²/s), and each probe followed by its exact
+    /// value where the scene has an exact solution.
     fn row(&mut self, state: &State<D>, moment: Moment, [kinetic, strain]: [f64; 2]) {
         let (particle, carriers) = (&state.particle, state.carriers(self.model.method));
         let history = &mut self.history;
@@ -157,13 +157,13 @@ impl<'a, const D: usize> Recorder<'a, D> {
         history.end_row();
     }
 
-    /// The table of the particles at time `t` (s).
+    /// Makes the table of the particles at time `t` (s).
     pub fn particles(&self, state: &State<D>, t: f64) -> Table {
         particles::table(self.scene, &state.particle, &self.reference, &self.exact, t)
     }
 }
 
-/// The particle nearest to `position`; of equally near ones the first.
+/// Finds the particle nearest to `position`; of equally near ones the first.
 ///
 /// A point midway between two particles is equally near to both up to
 /// round-off, hence the margin.

@@ -12,7 +12,6 @@
 //! g(s) = 2p/l with l = 1 − α_m − α_m s and
 //! p = (1 + s)(β − γs/2) − s(1 − s)/2. OTM maps nothing: g = 1.
 
-use crate::method::basis::Basis;
 use crate::method::breakdown::Breakdown;
 use crate::method::choice::{Integrator, Method};
 use crate::method::continuum::law::symmetric_part;
@@ -34,7 +33,7 @@ const MOST_ITERATIONS: usize = 300;
 /// is also taken with all particles moved by this share of a cell.
 const TOUCH: f64 = 1e-7;
 
-/// What a scheme does to a nodal velocity of A's eigenvalue s.
+/// A factor is what a scheme does to a nodal velocity of A's eigenvalue s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Factor {
     One,
@@ -79,7 +78,7 @@ impl Factor {
         }
     }
 
-    /// Coefficients of Chebyshev's polynomials on [0, 1]: two for the linear ones,
+    /// Gives the coefficients of Chebyshev's polynomials on [0, 1]: two for the linear ones,
     /// eight for generalized-α, which leaves less than 1e-4.
     fn chebyshev(&self) -> Vec<f64> {
         let n = match self {
@@ -101,7 +100,7 @@ impl Factor {
 }
 // ANCHOR_END: factor
 
-/// The operator Ĝᵀ g(A) M⁻¹ Ĝ on the stresses of the particles, with
+/// This is the operator Ĝᵀ g(A) M⁻¹ Ĝ on the stresses of the particles, with
 /// Ĝ = G √V D^½. It is symmetric and has the eigenvalues of M⁻¹ K g(A).
 struct Operator<'a, const D: usize> {
     state: &'a mut State<D>,
@@ -113,7 +112,7 @@ type Stress<const D: usize> = Vec<SMatrix<f64, D, D>>;
 type Field<const D: usize> = Vec<SVector<f64, D>>;
 
 impl<const D: usize> Operator<'_, D> {
-    /// D^½ on symmetric tensors: √(dλ + 2μ) on the spherical part, √(2μ) on the
+    /// Applies D^½ to a symmetric tensor: √(dλ + 2μ) on the spherical part, √(2μ) on the
     /// rest.
     fn root(&self, y: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
         let law = &self.model.law;
@@ -143,7 +142,7 @@ impl<const D: usize> Operator<'_, D> {
         (0..y.len()).map(|p| self.root(&z[p]) * -libm::sqrt(volume(self.state, p))).collect()
     }
 
-    /// q ← M⁻¹ q, 0 where the boundary is fixed.
+    /// Solves q ← M⁻¹ q, 0 where the boundary is fixed.
     fn divide(&mut self, q: &mut Field<D>) {
         for &(I, i) in &self.model.fixed {
             q[I][i] = 0.0;
@@ -156,7 +155,7 @@ impl<const D: usize> Operator<'_, D> {
         }
     }
 
-    /// A u: to the particles and back.
+    /// Applies A to u: to the particles and back.
     fn filter(&mut self, u: &Field<D>) -> Field<D> {
         let State { node, particle, shape, .. } = &*self.state;
         let mut q = vec![SVector::zeros(); node.len()];
@@ -170,7 +169,7 @@ impl<const D: usize> Operator<'_, D> {
         q
     }
 
-    /// g(A) u by Clenshaw's recurrence, in 2A − 1 on [−1, 1].
+    /// Applies g(A) to u by Clenshaw's recurrence, in 2A − 1 on [−1, 1].
     fn scheme(&mut self, u: &Field<D>) -> Field<D> {
         let zero = || vec![SVector::zeros(); u.len()];
         let (mut above, mut now): (Field<D>, Field<D>) = (zero(), zero());
@@ -191,7 +190,7 @@ impl<const D: usize> Operator<'_, D> {
     // ANCHOR_END: operator
 }
 
-/// The largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the
+/// Finds the largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the
 /// number of negative pivots (Sturm).
 fn largest_eigenvalue(diagonal: &[f64], beside: &[f64]) -> f64 {
     let bound = |k: usize| {
@@ -221,7 +220,7 @@ fn largest_eigenvalue(diagonal: &[f64], beside: &[f64]) -> f64 {
     0.5 * (low + high)
 }
 
-/// Numbers between −1 and 1 that are the same everywhere.
+/// Makes numbers between −1 and 1 that are the same everywhere.
 pub fn noise() -> impl FnMut() -> f64 {
     let mut state: u64 = 0x9e37_79b9_7f4a_7c15;
     move || {
@@ -231,7 +230,7 @@ pub fn noise() -> impl FnMut() -> f64 {
 }
 
 // ANCHOR: lanczos
-/// The largest stable Δt (s) of a tabulated state with masses, by Lanczos's method.
+/// Finds the largest stable Δt (s) of a tabulated state with masses, by Lanczos's method.
 /// Infinite for a body that nothing can strain.
 ///
 /// Round-off makes copies of the eigenvalues, but adds none above the largest, so
@@ -277,7 +276,7 @@ pub fn limit<const D: usize>(state: &mut State<D>, model: &Model<D>) -> f64 {
 }
 // ANCHOR_END: lanczos
 
-/// A state at k = 0 with its particles moved by `offset` (m) along every axis,
+/// Makes a state at k = 0 with its particles moved by `offset` (m) along every axis,
 /// tabulated, with nodal masses.
 fn moved<const D: usize>(
     scene: &Scene,
@@ -299,7 +298,7 @@ fn moved<const D: usize>(
     Ok(state)
 }
 
-/// The predicted limit of Δt (s) of a scene at its start, with the particles moved
+/// Predicts the limit of Δt (s) of a scene at its start, with the particles moved
 /// by `offset` of their own spacing along each axis.
 ///
 /// Errors: [`Breakdown`] of the first table, or of a singular mass matrix.
@@ -324,21 +323,21 @@ fn predicted_in<const D: usize>(scene: &Scene, offset: f64) -> Result<f64, Break
     Ok(least)
 }
 
-/// Where particles are moved to: by `offset`, and where it matters by a touch more
+/// Says where particles are moved to: by `offset`, and where it matters by a touch more
 /// and less.
 fn shifts<const D: usize>(scene: &Scene, model: &Model<D>, offset: f64) -> Vec<SVector<f64, D>> {
     let per_cell = |d: usize| scene.grid.particles_per_cell[d] as f64;
     let shift: SVector<f64, D> = SVector::from_fn(|d, _| offset * model.grid.h[d] / per_cell(d));
-    match (model.method, model.basis) {
-        (Method::Mpm(_), Basis::Ugimp { .. } | Basis::BSpline) => {
+    match model.method {
+        Method::Mpm(_) if model.basis.switches_nodes_on() => {
             [0.0, -TOUCH, TOUCH].map(|side| shift + model.grid.h * side).to_vec()
         }
         _ => vec![shift],
     }
 }
 
-/// Does a run with Δt = `dt` (s) grow? Random velocities so small that no particle
-/// moves by more than 1e-9 of a cell, without loads.
+/// Says whether a run with Δt = `dt` (s) grows. It starts from random velocities so small
+/// that no particle moves by more than 1e-9 of a cell, without loads.
 pub fn grows(scene: &Scene, offset: f64, dt: f64, step_count: usize) -> Result<bool, Breakdown> {
     match scene.dimension() {
         1 => grows_in::<1>(scene, offset, dt, step_count),
@@ -394,7 +393,7 @@ fn grows_at<const D: usize>(
     Ok(false)
 }
 
-/// The limit of Δt (s) found by bisection on growth, to `tolerance`, from a guess.
+/// Finds the limit of Δt (s) by bisection on growth, to `tolerance`, from a guess.
 pub fn measured(
     scene: &Scene,
     offset: f64,

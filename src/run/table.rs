@@ -2,7 +2,7 @@
 
 use crate::scene::fault::Fault;
 
-/// A table of numbers with a name for each column, kept row after row.
+/// A table holds numbers row after row, with a name for each column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     pub columns: Vec<String>,
@@ -12,7 +12,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// An empty table; its first row will name the columns.
+    /// Makes an empty table; its first row will name the columns.
     pub fn new() -> Self {
         Table { naming: true, ..Table::default() }
     }
@@ -35,25 +35,25 @@ impl Table {
         self.values.clear();
     }
 
-    /// All complete rows.
+    /// Lists all complete rows.
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[f64]> + ExactSizeIterator {
         self.values.chunks_exact(self.columns.len().max(1))
     }
 
-    /// The column called `name`.
+    /// Gives the column called `name`.
     pub fn column(&self, name: &str) -> Option<Vec<f64>> {
         let at = self.columns.iter().position(|column| column == name)?;
         Some(self.rows().map(|row| row[at]).collect())
     }
 
-    /// The table as CSV with a header line.
+    /// Writes the table as CSV with a header line.
     pub fn csv(&self) -> Result<Vec<u8>, Fault> {
         let rows = self.rows().map(|row| row.iter().map(|x| shortest(*x)).collect());
         csv(&self.columns, rows)
     }
 }
 
-/// Lines of text as CSV with a header line.
+/// Writes lines of text as CSV with a header line.
 pub fn csv(
     header: &[impl AsRef<[u8]>],
     rows: impl Iterator<Item = Vec<String>>,
@@ -67,7 +67,7 @@ pub fn csv(
     writer.into_inner().map_err(|error| fault(error.into_error()))
 }
 
-/// The shortest decimal that reads back as the same number; whole numbers
+/// Gives the shortest decimal that reads back as the same number; whole numbers
 /// below 1e15 without a point, −0 as 0.
 pub fn shortest(x: f64) -> String {
     let x = x + 0.0;

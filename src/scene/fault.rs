@@ -66,6 +66,12 @@ pub enum Fault {
     Scene(Box<SceneError>),
     #[error("cannot read {path}: {source}")]
     Read { path: PathBuf, source: std::io::Error },
+    #[error(
+        "cannot read {path}: {source}, and no scene of that name ships with the program; \
+         shipped: {shipped}{}",
+        suggestion.as_ref().map_or(String::new(), |name| format!("; did you mean `{name}`?"))
+    )]
+    NoScene { path: PathBuf, source: std::io::Error, shipped: String, suggestion: Option<String> },
     #[error("cannot write {path}: {source}")]
     Write { path: PathBuf, source: std::io::Error },
     #[error("{path}, line {line}: {problem}; allowed: {allowed}")]

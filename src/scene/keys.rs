@@ -1,182 +1,324 @@
-//! The keys that a scene file may hold: the contract in one table.
+//! The keys that a scene may hold: each written once, with what its value may be, what
+//! holds without it, and a line of help. Reading, refusing, the JSON Schema and the book's
+//! scene reference all ask this table.
 
-/// One key: its dotted path (entries of a list share one path), whether its
-/// table is incomplete without it, and what its value may be.
+use super::kind::Kind::{self, *};
+use super::kind::{Number, any, between, plain, positive, whole};
+use std::ops::Bound::{Excluded, Included, Unbounded};
+
+/// One key.
+#[derive(Clone, Copy)]
 pub struct Key {
+    /// Its dotted path. The entries of a list share one; `<side>` stands for a name of
+    /// [`SIDES`], `<axis>` for one of [`AXES`].
     pub path: &'static str,
-    pub required: bool,
-    pub allowed: &'static str,
+    pub kind: Kind,
+    pub without: Without,
+    /// What else the value must be, with regard to the rest of the scene; may be empty.
+    pub besides: &'static str,
+    /// The key and its word that this one goes with; it means nothing with another word.
+    pub with: Option<(&'static str, &'static str)>,
+    pub help: &'static str,
 }
 
-const fn must(path: &'static str, allowed: &'static str) -> Key {
-    Key { path, required: true, allowed }
+/// What holds where a scene does not have a key.
+#[derive(Clone, Copy)]
+pub enum Without {
+    /// The table is incomplete; for a key that goes with a word, where that word is chosen.
+    Refused,
+    Number(f64),
+    Word(&'static str),
+    Flag(bool),
+    /// What these words say.
+    Says(&'static str),
 }
 
-const fn may(path: &'static str, allowed: &'static str) -> Key {
-    Key { path, required: false, allowed }
-}
+/// Names of the axes.
+pub const AXES: [&str; 3] = ["x", "y", "z"];
 
-const SIDE: &str =
-    "\"fixed\" or \"free\", or one of them for each component, as in { x = \"fixed\" }";
-const COMPONENT: &str = "\"fixed\" or \"free\"";
-const BEYOND: &str = "a whole number of cells from 0 up; without it 0 beyond a fixed side, 1 beyond a free one and for uGIMP";
+/// Names of the lower and the upper side along each axis.
+pub const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], ["back", "front"]];
 
-const TRACTION: &str = "t in Pa, one number for each axis, 0 where the side is fixed";
-const RAMP: &str = "a time from 0 up in s over which it grows linearly; 0 without it";
+/// Names that columns and files of a run, and the lines of its summary, have already.
+const TAKEN: &[&str] = &[
+    "step",
+    "t",
+    "kinetic_energy",
+    "strain_energy",
+    "work",
+    "momentum",
+    "momentum_x",
+    "momentum_y",
+    "momentum_z",
+    "angular_momentum",
+    "angular_momentum_x",
+    "angular_momentum_y",
+    "angular_momentum_z",
+    "particles",
+    "displacement_field",
+    "velocity_field",
+    "stress_field",
+    "energy",
+];
+
+const STATES: &[&str] = &["fixed", "free"];
+const COMPONENTS: &[&str] = &["x", "y", "z", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
+const FROM_1: Number = whole(1.0, Unbounded);
+const MODE: Number = whole(1.0, Included(1000.0));
+const RAMP: Number = Number { least: Included(0.0), ..any("s") };
 
 /// All keys, in the order in which a scene is read aloud.
 pub const KEYS: &[Key] = &[
-    must("title", "a text without control characters"),
-    must("method", "\"mpm\" or \"otm\""),
-    must("mass", "\"lumped\" or \"consistent\""),
-    must("body", "a table"),
+    must("title", Text, "What summary and pictures are headed with"),
+    must("method", Choice(&["mpm", "otm"]), "Particles on a grid, or on nodes that move"),
+    must("mass", Choice(&["lumped", "consistent"]), "The mass matrix of the nodes"),
+    must("body", Table, "A box of linear elastic material"),
+    must("body.length", PerAxis(positive("m")), "The size of the box, L in 1D")
+        .besides("their number is the dimension, 1 to 3"),
+    may("body.origin", PerAxis(any("m")), Without::Number(0.0), "Its lower corner"),
+    must("body.density", One(positive("kg/m³")), "ρ at the start"),
+    must("body.youngs_modulus", One(positive("Pa")), "E, Young's modulus"),
+    must("body.poisson_ratio", One(between(Excluded(-1.0), Excluded(0.5))), "ν, Poisson's ratio"),
+    may("body.ball", List, Without::Says("all of the box"), "Discs or balls of material")
+        .besides("in 2D and 3D, each with a particle in it"),
+    must("body.ball.centre", PerAxis(any("m")), "The middle of a ball")
+        .besides("a point of the body's box"),
+    must("body.ball.radius", One(positive("m")), "The radius of a ball")
+        .besides("it keeps the ball inside the body's box"),
+    must("grid", Table, "Cells and particles"),
+    must("grid.cells", PerAxis(FROM_1), "Cells over the length of the body"),
     must(
-        "body.length",
-        "a length above 0 in m, one for each axis: their number is the dimension, 1 to 3",
-    ),
-    may("body.origin", "the body's lower corner in m, one number for each axis; 0 without it"),
-    must("body.density", "a number above 0, in kg/m³"),
-    must("body.youngs_modulus", "a number above 0, in Pa"),
-    must("body.poisson_ratio", "a number ν with −1 < ν < 0.5"),
-    may("body.ball", "a list, [[body.ball]]: the material is inside these, in 2D and 3D"),
-    must("body.ball.centre", "a point of the body's box in m, one number for each axis"),
-    must("body.ball.radius", "a length above 0 in m that keeps the ball inside the body's box"),
-    must("grid", "a table"),
-    must("grid.cells", "a whole number from 1 up over the body's length, one for each axis"),
-    must("grid.particles_per_cell", "a whole number from 1 to 64, one for each axis"),
+        "grid.particles_per_cell",
+        PerAxis(whole(1.0, Included(64.0))),
+        "Particles of a cell along each axis",
+    )
+    .besides("with the method \"otm\" at most 4"),
+    may("grid.beyond", Table, Without::Says("as below"), "Cells beyond the body")
+        .besides("not with the method \"otm\""),
     may(
-        "grid.beyond",
-        "a table of cells beyond the body, with the keys left, right, bottom, top, back, front",
+        "grid.beyond.<side>",
+        One(whole(0.0, Unbounded)),
+        Without::Says("0 beyond a fixed side, 1 beyond a free one and for uGIMP"),
+        "Cells beyond this side",
     ),
-    may("grid.beyond.left", BEYOND),
-    may("grid.beyond.right", BEYOND),
-    may("grid.beyond.bottom", BEYOND),
-    may("grid.beyond.top", BEYOND),
-    may("grid.beyond.back", BEYOND),
-    may("grid.beyond.front", BEYOND),
-    must("basis", "a table"),
-    must("basis.kind", "\"linear\", \"ugimp\", \"lme\" or \"bspline\""),
-    may("basis.gamma", "for lme: γ = βh², a number from 1e-6 to 1e6"),
+    must("basis", Table, "The shape functions"),
+    must(
+        "basis.kind",
+        Choice(&["linear", "ugimp", "lme", "bspline"]),
+        "Linear, uGIMP, local max-ent, quadratic B-splines",
+    )
+    .besides("with the method \"otm\" \"lme\", in 1D also \"linear\""),
+    must("basis.gamma", One(between(Included(1e-6), Included(1e6))), "γ = βh²")
+        .with("basis.kind", "lme"),
     may(
         "basis.cutoff",
-        "for lme: exp(−γ|ξ|²) below it is cut off, a number from 0 up to and below 1; 1e-6 without it",
-    ),
-    must("time", "a table"),
+        One(between(Included(0.0), Excluded(1.0))),
+        Without::Number(1e-6),
+        "Nodes with exp(−γ|ξ|²) below it are cut off",
+    )
+    .with("basis.kind", "lme"),
+    must("time", Table, "The scheme and its time step"),
     must(
         "time.integrator",
-        "\"newmark\", \"forward-euler\", \"corrected-euler\" or \"generalized-alpha\"",
-    ),
-    may("time.reading", "of newmark, step 8: \"second-order\" (without it) or \"as-printed\""),
-    may("time.stress_update", "of forward-euler: \"first\", \"last\" or \"modified-last\""),
-    may("time.rho_b", "of generalized-alpha: a number from 0 to 1"),
-    may("time.cfl", "a number above 0: the largest c Δt / h; this key, or the next, or both"),
+        Choice(&["newmark", "forward-euler", "corrected-euler", "generalized-alpha"]),
+        "The scheme that carries the particles through time",
+    )
+    .besides("with the method \"otm\" \"newmark\""),
+    may(
+        "time.reading",
+        Choice(&["second-order", "as-printed"]),
+        Without::Word("second-order"),
+        "How step 8 is read",
+    )
+    .with("time.integrator", "newmark"),
+    must(
+        "time.stress_update",
+        Choice(&["first", "last", "modified-last"]),
+        "When the stress is updated",
+    )
+    .with("time.integrator", "forward-euler"),
+    must(
+        "time.rho_b",
+        One(between(Included(0.0), Included(1.0))),
+        "ρ_b, the spectral radius at the bifurcation",
+    )
+    .with("time.integrator", "generalized-alpha"),
+    may(
+        "time.cfl",
+        One(positive("")),
+        Without::Says("time.fraction_of_critical bounds it"),
+        "The largest c Δt / h",
+    )
+    .besides("this key, time.fraction_of_critical, or both"),
     may(
         "time.fraction_of_critical",
-        "a number above 0: the largest Δt, as a part of the limit that is predicted at the start",
+        One(positive("")),
+        Without::Says("time.cfl bounds it"),
+        "The largest Δt, as a part of the limit that is predicted at the start",
     ),
-    may("time.allow_unstable", "true runs what the predicted limit says must blow up"),
-    must("time.end", "a time above 0, in s"),
-    may("boundary", "a table of sides: left, right (x); bottom, top (y); back, front (z)"),
-    may("boundary.left", SIDE),
-    may("boundary.left.x", COMPONENT),
-    may("boundary.left.y", COMPONENT),
-    may("boundary.left.z", COMPONENT),
-    may("boundary.right", SIDE),
-    may("boundary.right.x", COMPONENT),
-    may("boundary.right.y", COMPONENT),
-    may("boundary.right.z", COMPONENT),
-    may("boundary.bottom", SIDE),
-    may("boundary.bottom.x", COMPONENT),
-    may("boundary.bottom.y", COMPONENT),
-    may("boundary.bottom.z", COMPONENT),
-    may("boundary.top", SIDE),
-    may("boundary.top.x", COMPONENT),
-    may("boundary.top.y", COMPONENT),
-    may("boundary.top.z", COMPONENT),
-    may("boundary.back", SIDE),
-    may("boundary.back.x", COMPONENT),
-    may("boundary.back.y", COMPONENT),
-    may("boundary.back.z", COMPONENT),
-    may("boundary.front", SIDE),
-    may("boundary.front.x", COMPONENT),
-    may("boundary.front.y", COMPONENT),
-    may("boundary.front.z", COMPONENT),
-    may("initial_velocity", "a list of regions, [[initial_velocity]]"),
-    must(
-        "initial_velocity.from",
-        "the region's lower corner in m, inside the body, one number for each axis",
+    may(
+        "time.allow_unstable",
+        Flag,
+        Without::Flag(false),
+        "Run what the predicted limit says must blow up",
     ),
-    must("initial_velocity.to", "the region's upper corner in m, above `from`, inside the body"),
-    must("initial_velocity.velocity", "a velocity in m/s, one number for each axis"),
-    may("vibration", "a table, in 1D, in place of initial_velocity: v = V φ(x), a natural mode"),
-    must("vibration.mode", "a whole number from 1 to 1000, at most half of the particles"),
-    must("vibration.velocity", "V, a velocity in m/s"),
+    must("time.end", One(positive("s")), "The end of the run"),
+    may("boundary", Table, Without::Says("free sides"), "The sides of the box")
+        .besides("left, right (x); bottom, top (y); back, front (z)"),
+    may("boundary.<side>", ChoiceOrTable(STATES), Without::Word("free"), "What holds this side"),
+    may(
+        "boundary.<side>.<axis>",
+        Choice(STATES),
+        Without::Word("free"),
+        "What holds this component of the velocity there",
+    ),
+    may("initial_velocity", List, Without::Says("at rest"), "Regions that are thrown")
+        .besides("in place of vibration and manufactured"),
+    must("initial_velocity.from", PerAxis(any("m")), "The region's lower corner")
+        .besides("inside the body"),
+    must("initial_velocity.to", PerAxis(any("m")), "The region's upper corner")
+        .besides("above `from`, inside the body, with a particle in between"),
+    must("initial_velocity.velocity", PerAxis(any("m/s")), "The velocity there"),
+    may("vibration", Table, Without::Says("no mode"), "A natural mode: v = V φ(x)")
+        .besides("in 1D, in place of initial_velocity and manufactured"),
+    must("vibration.mode", One(MODE), "The number of the mode")
+        .besides("at most half of the particles"),
+    must("vibration.velocity", One(any("m/s")), "V, the largest velocity"),
     may(
         "manufactured",
-        "a table, in 1D, in place of initial_velocity: u = A φ(X) sin ωt, kept by a body force",
-    ),
-    must("manufactured.mode", "a whole number from 1 to 1000, at most half of the particles"),
-    must("manufactured.amplitude", "A in m with |A| k < 1, so that no material turns inside out"),
-    may("body_force", "a table"),
-    must("body_force.acceleration", "b in m/s², one number for each axis"),
-    may("body_force.ramp", RAMP),
-    may("traction", "a table of sides as in `boundary`, each with its traction"),
-    may("traction.left", TRACTION),
-    may("traction.right", TRACTION),
-    may("traction.bottom", TRACTION),
-    may("traction.top", TRACTION),
-    may("traction.back", TRACTION),
-    may("traction.front", TRACTION),
-    may("traction.ramp", RAMP),
-    may("probe", "a list of probes, [[probe]]"),
-    must(
-        "probe.name",
-        "a name of at most 64 letters, digits and _, used once, and not that of another column",
-    ),
-    must("probe.quantity", "\"velocity\", \"stress\" or \"displacement\""),
-    may("probe.component", "in 2D and 3D: x, y, z, for stress two of them as in \"xy\""),
-    must(
-        "probe.position",
-        "a point of the body in m, one number for each axis; the nearest particle is read",
-    ),
-    may("output", "a table"),
-    may("output.every", "a whole number from 1 up: record every so many steps; 1 without it"),
+        Table,
+        Without::Says("no such motion"),
+        "u = A φ(X) sin ωt, kept by a body force",
+    )
+    .besides("in 1D, in place of initial_velocity and vibration"),
+    must("manufactured.mode", One(MODE), "The number of the mode")
+        .besides("at most half of the particles"),
+    must("manufactured.amplitude", One(any("m")), "A, the largest displacement")
+        .besides("|A| k < 1, so that no material turns inside out"),
+    may("body_force", Table, Without::Says("none"), "A force per mass, everywhere the same")
+        .besides("not with manufactured"),
+    must("body_force.acceleration", PerAxis(any("m/s²")), "b, the acceleration"),
+    may("body_force.ramp", One(RAMP), Without::Number(0.0), "The time over which it grows"),
+    may("traction", Table, Without::Says("none"), "Forces on the sides of the box")
+        .besides("not with manufactured or balls"),
+    may(
+        "traction.<side>",
+        PerAxis(any("Pa")),
+        Without::Says("none on this side"),
+        "The traction on this side",
+    )
+    .besides("0 where the side is fixed"),
+    may("traction.ramp", One(RAMP), Without::Number(0.0), "The time over which they grow"),
+    may("probe", List, Without::Says("none"), "Particles whose history is recorded"),
+    must("probe.name", Name(TAKEN), "The name of its column and picture").besides("used once"),
+    must("probe.quantity", Choice(&["velocity", "stress", "displacement"]), "What is recorded"),
+    may(
+        "probe.component",
+        Choice(COMPONENTS),
+        Without::Says("in 1D the only one"),
+        "Which component",
+    )
+    .besides("two letters for a stress, one otherwise; 2D and 3D need it"),
+    must("probe.position", PerAxis(any("m")), "The particle nearest to it is followed")
+        .besides("a point of the body"),
+    may("output", Table, Without::Says("as below"), "What is recorded"),
+    may("output.every", One(FROM_1), Without::Number(1.0), "Record every so many steps"),
     may(
         "output.vtk",
-        "in 2D and 3D: true writes the particles of every recorded step for ParaView",
-    ),
+        Flag,
+        Without::Flag(false),
+        "Write the particles of every recorded step for ParaView",
+    )
+    .besides("in 2D and 3D"),
 ];
 
-/// Keys whose value is a list of tables.
-pub const LISTS: &[&str] = &["initial_velocity", "probe", "body.ball"];
+const fn must(path: &'static str, kind: Kind, help: &'static str) -> Key {
+    may(path, kind, Without::Refused, help)
+}
 
-/// The key with this path, list indices dropped.
+const fn may(path: &'static str, kind: Kind, without: Without, help: &'static str) -> Key {
+    Key { path, kind, without, besides: "", with: None, help }
+}
+
+impl Key {
+    const fn besides(self, besides: &'static str) -> Key {
+        Key { besides, ..self }
+    }
+
+    const fn with(self, key: &'static str, word: &'static str) -> Key {
+        Key { with: Some((key, word)), ..self }
+    }
+
+    /// What its value may be, in words.
+    pub fn allowed(&self) -> String {
+        let with = self.with.map(|(key, word)| format!("only with {key} = \"{word}\""));
+        let besides = Some(self.besides.to_string()).filter(|besides| !besides.is_empty());
+        let all = [Some(self.kind.words()), besides, with];
+        all.into_iter().flatten().collect::<Vec<_>>().join("; ")
+    }
+
+    /// What holds without it, in words.
+    pub fn without_words(&self) -> String {
+        match self.without {
+            Without::Refused if self.with.is_some() => "needed there".into(),
+            Without::Refused => "needed".into(),
+            Without::Number(x) => plain(x),
+            Without::Word(word) => format!("\"{word}\""),
+            Without::Flag(flag) => flag.to_string(),
+            Without::Says(words) => words.into(),
+        }
+    }
+
+    /// True where its table must have it, whatever else the scene says.
+    pub fn is_required(&self) -> bool {
+        matches!(self.without, Without::Refused) && self.with.is_none()
+    }
+
+    /// The table that it stands in, and its name there.
+    pub fn place(&self) -> (&'static str, &'static str) {
+        self.path.rsplit_once('.').unwrap_or(("", self.path))
+    }
+
+    /// The names that it stands for: its own, or those of all sides or axes.
+    pub fn names(&self) -> Vec<&'static str> {
+        match self.place().1 {
+            "<side>" => SIDES.concat(),
+            "<axis>" => AXES.to_vec(),
+            name => vec![name],
+        }
+    }
+}
+
+/// The key with this path, which may hold indices of lists and names of sides.
 pub fn find(path: &str) -> Option<&'static Key> {
-    KEYS.iter().find(|key| key.path == path)
+    let plain = without_indices(path);
+    KEYS.iter().find(|key| stands_for(key.path, &plain))
 }
 
-/// The names that may stand directly in table `parent`.
-pub fn children(parent: &str) -> impl Iterator<Item = &'static Key> {
-    let depth = if parent.is_empty() { 0 } else { parent.len() + 1 };
-    KEYS.iter().filter(move |key| {
-        let inside = match parent {
-            "" => true,
-            _ => key.path.strip_prefix(parent).is_some_and(|rest| rest.starts_with('.')),
-        };
-        inside && !key.path[depth.min(key.path.len())..].contains('.')
-    })
+/// The keys that may stand directly in the table at `path`.
+pub fn children(path: &str) -> impl Iterator<Item = &'static Key> {
+    let plain = without_indices(path);
+    KEYS.iter().filter(move |key| stands_for(key.place().0, &plain))
 }
 
-/// The candidate that `word` was probably meant to be.
-pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
-    // The first measure favours a common beginning, the second swapped letters.
-    let likeness = |candidate: &str| {
-        strsim::jaro_winkler(word, candidate)
-            .max(strsim::normalized_damerau_levenshtein(word, candidate))
+/// True where `pattern`, the path of a key, means `path`.
+fn stands_for(pattern: &str, path: &str) -> bool {
+    let same = |(pattern, name): (&str, &str)| match pattern {
+        "<side>" => SIDES.as_flattened().contains(&name),
+        "<axis>" => AXES.contains(&name),
+        _ => pattern == name,
     };
-    candidates
-        .map(|candidate| (likeness(candidate), candidate))
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .filter(|(likeness, _)| *likeness > 0.65)
-        .map(|(_, candidate)| candidate.to_string())
+    pattern.split('.').count() == path.split('.').count()
+        && pattern.split('.').zip(path.split('.')).all(same)
+}
+
+/// `probe[1].name` → `probe.name`.
+fn without_indices(path: &str) -> String {
+    let mut inside = false;
+    path.chars()
+        .filter(|c| {
+            inside = (inside || *c == '[') && *c != ']';
+            !inside && *c != ']'
+        })
+        .collect()
 }

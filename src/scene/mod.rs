@@ -2,23 +2,26 @@
 //!
 //! Data only. What a scene does not declare is not computed: no boundary table
 //! means free sides, no region of initial velocity means a body at rest, no
-//! probe means no probe column. [`keys::KEYS`] lists every key.
+//! probe means no probe column. [`keys::KEYS`] says of every key what it may be.
 
-mod check;
 pub mod fault;
-mod file;
 pub mod keys;
+pub mod kind;
 mod limits;
-mod loads;
+mod loading;
+mod motion;
 mod parts;
+mod probes;
 mod read;
+#[cfg(feature = "program")]
+pub mod schema;
 mod scheme;
+mod shipped;
 mod sizes;
 mod source;
+mod values;
 
 pub use parts::*;
 pub use read::{Declared, declare};
+pub use shipped::{DYKA, SHIPPED, Shipped, neither, shipped};
 pub use sizes::wave_speed;
-
-/// The Dyka & Ingel bar, which ships inside the program.
-pub const DYKA: &str = include_str!("../../data/scenes/dyka.toml");

@@ -20,8 +20,8 @@ pub struct Scene {
     /// For each axis its lower and upper side.
     pub boundary: Vec<[Side; 2]>,
     pub motion: Motion,
-    pub body_force: Option<BodyForce>,
-    pub traction: Option<Traction>,
+    pub body_force: Option<BodyForceSpec>,
+    pub traction: Option<TractionSpec>,
     pub probes: Vec<Probe>,
     /// Record every so many steps.
     pub every: usize,
@@ -103,7 +103,7 @@ pub enum Motion {
 
 /// A force per mass, the same everywhere.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BodyForce {
+pub struct BodyForceSpec {
     /// b (m/s²).
     pub acceleration: Vec<f64>,
     /// The time over which it grows linearly (s); 0 for at once.
@@ -112,7 +112,7 @@ pub struct BodyForce {
 
 /// Tractions on the sides of the box.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Traction {
+pub struct TractionSpec {
     /// For each axis its lower and upper side: t (Pa) per area at t = 0.
     pub sides: Vec<[Vec<f64>; 2]>,
     /// The time over which they grow linearly (s); 0 for at once.

@@ -1,7 +1,6 @@
 //! What a scene amounts to before anything is built: particles, nodes, pairs, steps.
 
 use super::parts::{Body, Scene};
-use crate::method::basis::{Basis, support};
 use crate::method::continuum::law::LinearElastic;
 
 /// c = √((λ + 2μ) / ρ) (m/s), the speed of a plane wave, (46) in the bar.
@@ -47,14 +46,7 @@ impl Scene {
     pub fn pairs_per_particle(&self) -> f64 {
         let along = |d: usize| {
             let [before, after] = self.grid.beyond[d];
-            let nodes = (before + self.grid.cells[d] + after) as f64 + 1.0;
-            match self.basis {
-                Basis::Linear => 2.0,
-                Basis::Ugimp { .. } | Basis::BSpline => 3.0,
-                Basis::Lme { gamma, cutoff } => {
-                    (2.0 * support::radius(gamma, cutoff) + 2.0).min(nodes)
-                }
-            }
+            self.basis.most_along((before + self.grid.cells[d] + after) as f64 + 1.0)
         };
         (0..self.dimension()).map(along).product()
     }

@@ -1,49 +1,59 @@
 //! The text of a scene: a file with the `--set` values merged in, and the way
 //! back from a byte to the place where it was written.
 
-use super::keys::{self, KEYS};
-use crate::scene::fault::SceneError;
-use serde::Deserialize;
+use super::fault::SceneError;
+use super::keys;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// One piece of text and where it begins in the run of all spans.
-struct Piece {
+/// What may follow `--set`.
+const SET: &str = "KEY=VALUE, for example grid.cells=80";
+
+/// One passage of the text, and where it begins in the run of all spans.
+struct Passage {
     path: String,
-    text: String,
+    /// The text behind as many blanks as `start` says.
+    padded: String,
     start: usize,
 }
 
-/// A scene's text: the file first, then one piece for each `--set`.
+impl Passage {
+    fn text(&self) -> &str {
+        &self.padded[self.start..]
+    }
+}
+
+/// A scene's text: the file first, then one passage for each `--set`.
 ///
-/// Every piece is parsed as if it followed the pieces before it, so that one
-/// number, the span, says both which piece and where in it.
+/// Every passage is parsed as if it followed those before it, so that one
+/// number, the span, says both which passage and where in it.
 pub struct Source {
-    pieces: Vec<Piece>,
+    passages: Vec<Passage>,
 }
 
 impl Source {
-    /// The pieces of a scene; `sets` are the arguments `KEY=VALUE` of `--set`.
+    /// The passages of a scene; `sets` are the arguments `KEY=VALUE` of `--set`.
     pub fn new(path: &str, text: &str, sets: &[String]) -> Self {
-        let mut source = Source { pieces: Vec::new() };
-        source.add(path.to_string(), text.to_string());
+        let mut source = Source { passages: Vec::new() };
+        source.add(path.to_string(), text);
         for set in sets {
-            let text = match set.split_once('=') {
+            let quoted = match set.split_once('=') {
                 // A bare word is a string, so that shells need no quotes.
                 Some((key, word)) if DeTable::parse(set).is_err() && is_word(word) => {
                     format!("{key}=\"{}\"", word.trim())
                 }
                 _ => set.clone(),
             };
-            source.add(format!("--set {set}"), text);
+            source.add(format!("--set {set}"), &quoted);
         }
         source
     }
 
-    fn add(&mut self, path: String, text: String) {
-        let start = self.pieces.last().map_or(0, |last| last.start + last.text.len() + 1);
-        self.pieces.push(Piece { path, text, start });
+    fn add(&mut self, path: String, text: &str) {
+        let start = self.passages.last().map_or(0, |last| last.padded.len() + 1);
+        let padded = " ".repeat(start) + text;
+        self.passages.push(Passage { path, padded, start });
     }
 
     /// The error `problem` with the value of `key` at `span`.
@@ -53,70 +63,49 @@ impl Source {
         span: Range<usize>,
         problem: impl Into<String>,
     ) -> Box<SceneError> {
-        let piece =
-            self.pieces.iter().rfind(|piece| piece.start <= span.start).unwrap_or(&self.pieces[0]);
-        let end = piece.text.len();
-        let local = |at: usize| at.saturating_sub(piece.start).min(end);
+        let found = self.passages.iter().rfind(|passage| passage.start <= span.start);
+        let passage = found.unwrap_or(&self.passages[0]);
+        let end = passage.text().len();
+        let local = |at: usize| at.saturating_sub(passage.start).min(end);
         Box::new(SceneError {
-            path: piece.path.clone(),
-            text: piece.text.clone(),
+            path: passage.path.clone(),
+            text: passage.text().to_string(),
             span: local(span.start)..local(span.end),
             key: key.to_string(),
             problem: problem.into(),
-            allowed: keys::find(&without_indices(key))
-                .map_or(String::new(), |key| key.allowed.to_string()),
+            allowed: keys::find(key).map_or(String::new(), |key| key.allowed()),
             suggestion: None,
         })
     }
 
-    /// Reads the text as a `T`: syntax, unknown keys, missing keys, types.
-    pub fn read<T: for<'de> Deserialize<'de>>(&self) -> Result<(T, Spans), Box<SceneError>> {
-        let mut padded = Vec::new();
-        for piece in &self.pieces {
-            padded.push(format!("{}{}", " ".repeat(piece.start), piece.text));
-        }
-        let mut merged: Option<Spanned<DeTable<'_>>> = None;
-        for (text, piece) in padded.iter().zip(&self.pieces) {
-            let table = DeTable::parse(text).map_err(|error| {
-                let mut error = self.error(
-                    "",
-                    error.span().unwrap_or(piece.start..piece.start),
-                    error.message(),
-                );
-                if merged.is_some() {
-                    error.allowed = "KEY=VALUE, for example grid.cells=80".to_string();
-                }
+    /// All passages as one table.
+    ///
+    /// Errors: [`SceneError`] for what is no TOML, or no `KEY=VALUE`.
+    pub fn table(&self) -> Result<Spanned<DeTable<'_>>, Box<SceneError>> {
+        let (file, sets) = (&self.passages[0], &self.passages[1..]);
+        let mut merged = self.parse(file)?;
+        for set in sets {
+            let with_help = |mut error: Box<SceneError>| {
+                error.allowed = SET.to_string();
                 error
-            })?;
-            let single = table.get_ref().len() == 1
-                && piece.text.contains('=')
-                && !piece.text.trim_start().starts_with('[')
-                && !piece.text.contains('\n');
-            if merged.is_some() && !single {
-                let span = piece.start..piece.start + piece.text.len();
-                let mut error = self.error("", span, "this is not one KEY=VALUE");
-                error.allowed = "KEY=VALUE, for example grid.cells=80".to_string();
-                return Err(error);
+            };
+            let table = self.parse(set).map_err(with_help)?.into_inner();
+            let text = set.text();
+            let line = !text.trim_start().starts_with('[') && !text.contains('\n');
+            if table.len() != 1 || !text.contains('=') || !line {
+                let span = set.start..set.padded.len();
+                return Err(with_help(self.error("", span, "this is not one KEY=VALUE")));
             }
-            match &mut merged {
-                None => merged = Some(table),
-                Some(merged) => self.merge_table(merged.get_mut(), table.into_inner(), "")?,
-            }
+            self.merge_table(merged.get_mut(), table, "")?;
         }
-        let Some(table) = merged else {
-            return Err(self.error("", 0..0, "the scene is empty"));
-        };
-        self.known_keys(table.get_ref(), "", table.span())?;
-        let spans = Spans(key_spans(table.get_ref(), ""));
-        match T::deserialize(toml::Deserializer::from(table)) {
-            Ok(file) => Ok((file, spans)),
-            Err(error) => {
-                let span = error.span().unwrap_or(0..0);
-                let plain = error.message().replace("expected f64", "expected a number");
-                let plain = plain.replace("expected i64", "expected a whole number");
-                Err(self.error(spans.key_at(span.start), span, plain))
-            }
-        }
+        Ok(merged)
+    }
+
+    fn parse<'a>(&self, passage: &'a Passage) -> Result<Spanned<DeTable<'a>>, Box<SceneError>> {
+        DeTable::parse(&passage.padded).map_err(|error| {
+            let span = error.span().unwrap_or(passage.start..passage.start);
+            self.error("", span, error.message())
+        })
     }
 
     fn merge_table<'i>(
@@ -166,78 +155,6 @@ impl Source {
             }
         }
     }
-
-    /// Every key is known, and no table lacks a required one.
-    fn known_keys(
-        &self,
-        table: &DeTable<'_>,
-        parent: &str,
-        span: Range<usize>,
-    ) -> Result<(), Box<SceneError>> {
-        let bare_parent = without_indices(parent);
-        for (name, value) in table {
-            let path = join(parent, name.get_ref());
-            if keys::find(&without_indices(&path)).is_none() {
-                let mut error = self.error(&path, name.span(), "this key is not known");
-                let siblings = || keys::children(&bare_parent).map(|key| last(key.path));
-                error.allowed = siblings().collect::<Vec<_>>().join(", ");
-                // The right name in the wrong table is worth a thought, too.
-                error.suggestion = keys::nearest(name.get_ref(), siblings()).or_else(|| {
-                    KEYS.iter()
-                        .find(|key| last(key.path) == name.get_ref())
-                        .map(|key| key.path.to_string())
-                });
-                return Err(error);
-            }
-            let wants_table = keys::children(&without_indices(&path)).next().is_some();
-            let is_list = keys::LISTS.contains(&path.as_str());
-            match value.get_ref() {
-                DeValue::Table(inner) => self.known_keys(inner, &path, value.span())?,
-                DeValue::Array(list) if is_list => {
-                    if let Some(entry) = list.iter().find(|entry| !entry.get_ref().is_table()) {
-                        let problem = "each entry must be a table with its keys";
-                        return Err(self.error(&path, entry.span(), problem));
-                    }
-                    for (i, entry) in list.iter().enumerate() {
-                        if let DeValue::Table(inner) = entry.get_ref() {
-                            self.known_keys(inner, &format!("{path}[{i}]"), entry.span())?;
-                        }
-                    }
-                }
-                // A side of the boundary may be one word for all components.
-                DeValue::String(_) if path.starts_with("boundary.") => {}
-                _ if wants_table => {
-                    let wanted = if is_list { "a list of tables" } else { "a table with keys" };
-                    return Err(self.error(&path, value.span(), format!("this must be {wanted}")));
-                }
-                _ => {}
-            }
-        }
-        for key in keys::children(&bare_parent).filter(|key| key.required) {
-            if table.get(last(key.path)).is_none() {
-                let path = join(parent, last(key.path));
-                return Err(self.error(&path, span.start..span.start, "this key is missing"));
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Every key of a scene with the span of its value.
-pub struct Spans(Vec<(String, Range<usize>)>);
-
-impl Spans {
-    /// Where the value of `key` stands; the beginning for a key that is not there.
-    pub fn of(&self, key: &str) -> Range<usize> {
-        let found = self.0.iter().find(|(name, _)| name == key);
-        found.map_or(0..0, |(_, span)| span.clone())
-    }
-
-    /// The innermost key whose value holds byte `at`; empty outside of all.
-    fn key_at(&self, at: usize) -> &str {
-        let around = self.0.iter().filter(|(_, span)| span.contains(&at));
-        around.min_by_key(|(_, span)| span.len()).map_or("", |(key, _)| key)
-    }
 }
 
 /// A word that TOML would want in quotes.
@@ -245,42 +162,7 @@ fn is_word(text: &str) -> bool {
     !text.trim().is_empty() && !text.contains(['"', '\'', '[', '{', '=', '\n'])
 }
 
-fn join(parent: &str, name: &str) -> String {
+/// The path of `name` in the table `parent`.
+pub fn join(parent: &str, name: &str) -> String {
     if parent.is_empty() { name.to_string() } else { format!("{parent}.{name}") }
-}
-
-fn last(path: &str) -> &str {
-    path.rsplit('.').next().unwrap_or(path)
-}
-
-/// `probe[1].name` → `probe.name`.
-fn without_indices(path: &str) -> String {
-    let mut inside = false;
-    path.chars()
-        .filter(|c| {
-            inside = (inside || *c == '[') && *c != ']';
-            !inside && *c != ']'
-        })
-        .collect()
-}
-
-/// Every key with the span of its value.
-fn key_spans(table: &DeTable<'_>, parent: &str) -> Vec<(String, Range<usize>)> {
-    let mut spans = Vec::new();
-    for (name, value) in table {
-        let path = join(parent, name.get_ref());
-        match value.get_ref() {
-            DeValue::Table(inner) => spans.extend(key_spans(inner, &path)),
-            DeValue::Array(list) => {
-                for (i, entry) in list.iter().enumerate() {
-                    if let DeValue::Table(inner) = entry.get_ref() {
-                        spans.extend(key_spans(inner, &format!("{path}[{i}]")));
-                    }
-                }
-            }
-            _ => {}
-        }
-        spans.push((path, value.span()));
-    }
-    spans
 }

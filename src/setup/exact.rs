@@ -5,7 +5,7 @@ use crate::method::exact::Exact;
 use crate::method::exact::forced::{Forced, Load};
 use crate::method::exact::manufactured::Manufactured;
 use crate::method::exact::mode::{Mode, Vibration};
-use crate::method::exact::riemann::{Bar, Patch};
+use crate::method::exact::riemann::{Bar, End, Patch};
 use crate::scene::fault::Fault;
 use crate::scene::{Motion, Scene, wave_speed};
 
@@ -40,22 +40,26 @@ pub fn exact(scene: &Scene) -> Result<Exact, Fault> {
             return Ok(Exact::Manufactured(Manufactured { mode, amplitude, c, modulus }));
         }
     }
-    let side = |upper: usize| {
-        let traction = scene.traction.as_ref().map_or(0.0, |t| t.sides[0][upper][0]);
-        let ramp = scene.traction.as_ref().map_or(0.0, |t| t.ramp);
-        Load { value: traction, ramp }
-    };
-    let loaded = scene.body_force.is_some() || scene.traction.is_some();
-    let forced = loaded.then(|| Forced {
-        length,
-        c,
-        Z: density * c,
-        ends,
-        body: scene
-            .body_force
-            .as_ref()
-            .map_or(Load::default(), |body| Load { value: body.acceleration[0], ramp: body.ramp }),
-        traction: [side(0), side(1)],
-    });
+    let forced = forced(scene, ends, c);
     Ok(Exact::Linear { thrown, vibration, forced })
+}
+
+/// What the loads of a scene do to the bar; `None` without loads.
+fn forced(scene: &Scene, ends: [End; 2], c: f64) -> Option<Forced> {
+    if scene.body_force.is_none() && scene.traction.is_none() {
+        return None;
+    }
+    let side = |upper: usize| {
+        let traction = scene.traction.as_ref();
+        traction.map_or(Load::default(), |t| Load { value: t.sides[0][upper][0], ramp: t.ramp })
+    };
+    let body = scene.body_force.as_ref();
+    Some(Forced {
+        length: scene.body.length[0],
+        c,
+        Z: scene.body.density * c,
+        ends,
+        body: body.map_or(Load::default(), |b| Load { value: b.acceleration[0], ramp: b.ramp }),
+        traction: [side(0), side(1)],
+    })
 }

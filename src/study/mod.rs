@@ -1,4 +1,4 @@
-//! Studies: many runs of one scene, and what can be said before any.
+//! Studies: one scene computed in many ways, and what that says.
 
 pub mod configuration;
 pub mod gamma;

@@ -1,4 +1,6 @@
-//! Which shape functions a model has.
+//! Which shape functions a model has, and what the rest of the program asks of them.
+
+use super::support::radius;
 
 /// The basis of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,4 +21,32 @@ pub enum Basis {
     },
     /// Quadratic B-splines centred at the nodes.
     BSpline,
+}
+
+impl Basis {
+    /// Says whether each particle keeps a multiplier λ_p between tables.
+    pub fn has_multiplier(&self) -> bool {
+        match self {
+            Basis::Lme { .. } => true,
+            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline => false,
+        }
+    }
+
+    /// Says whether a node that a particle has just touched counts at once, however small
+    /// its mass, so that the limit of Δt is also taken with all particles moved by a touch.
+    pub fn switches_nodes_on(&self) -> bool {
+        match self {
+            Basis::Ugimp { .. } | Basis::BSpline => true,
+            Basis::Linear | Basis::Lme { .. } => false,
+        }
+    }
+
+    /// Bounds the nodes that a particle sees along an axis that has `nodes` of them.
+    pub fn most_along(&self, nodes: f64) -> f64 {
+        match self {
+            Basis::Linear => 2.0,
+            Basis::Ugimp { .. } | Basis::BSpline => 3.0,
+            Basis::Lme { gamma, cutoff } => (2.0 * radius(*gamma, *cutoff) + 2.0).min(nodes),
+        }
+    }
 }

@@ -18,7 +18,8 @@ use super::breakdown::Breakdown;
 use super::continuum::shape::Shape;
 use super::grid::{Grid, Located};
 use nalgebra::SVector;
-use tensor::Line;
+use support::{Width, radius, row_on_grid};
+use tensor::{Line, product_row};
 
 // ANCHOR: tabulate
 /// Fills the table with N_Ip (–) and ∇N_Ip (1/m) at the positions `x` (m). With local
@@ -40,13 +41,13 @@ pub fn fill_from_grid<const D: usize>(
         let at = grid.locate(x_p).ok_or_else(|| outside(p, x_p))?;
         match basis {
             Basis::Lme { gamma, cutoff } => {
-                let reach = support::radius(*gamma, *cutoff);
-                support::row(shape, scratch, &mut lambda[p], *gamma, reach, grid, &at)
+                let width = Width { gamma: *gamma, reach: radius(*gamma, *cutoff) };
+                row_on_grid(shape, &mut scratch.lme, &mut lambda[p], width, grid, &at)
                     .map_err(|failure| Breakdown::NoBasis { particle: p, failure })?;
             }
             _ => {
                 let lines = lines(basis, grid, &at).ok_or_else(|| outside(p, x_p))?;
-                tensor::row(shape, grid, &lines);
+                product_row(shape, grid, &lines);
             }
         }
         shape.end_row();

@@ -1,9 +1,10 @@
-//! Local max-ent on nodes that stand anywhere, and move: the table of OTM.
+//! Local max-ent on nodes that stand anywhere: in a list, and where they move, the table
+//! of OTM.
 
 use super::kind::Basis;
-use super::lme::Failure;
+use super::lme::{Failure, Lme, max_ent_row};
 use super::scratch::Scratch;
-use super::support;
+use super::support::{Width, radius};
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
 use nalgebra::SVector;
@@ -41,91 +42,125 @@ pub fn fill_from_nodes<const D: usize>(
     x: &[SVector<f64, D>],
 ) -> Result<(), Breakdown> {
     shape.clear();
-    if let Basis::Lme { gamma, cutoff } = basis {
+    let width = match basis {
         // At least the nodes of a cell, however narrow the functions.
-        let reach = support::radius(*gamma, *cutoff).max(1.0);
+        Basis::Lme { gamma, cutoff } => {
+            Some(Width { gamma: *gamma, reach: radius(*gamma, *cutoff).max(1.0) })
+        }
+        _ => None,
+    };
+    if let Some(Width { reach, .. }) = width {
         scratch.bins.sort(nodes.x, nodes.h, if reach.is_finite() { reach } else { 1.0 });
     }
     for p in 0..x.len() {
-        let row = match basis {
-            Basis::Lme { gamma, cutoff } => {
-                let reach = support::radius(*gamma, *cutoff).max(1.0);
-                local_max_ent_row(shape, scratch, &mut lambda[p], *gamma, reach, nodes, &x[p])
-            }
-            _ => linear_row(shape, nodes.x, &x[p]).ok_or(Failure::OutsideHull),
+        let row = match width {
+            Some(width) => row_among_nodes(shape, scratch, &mut lambda[p], width, nodes, &x[p]),
+            None => linear_row(shape, nodes.x, &x[p]),
         };
         row.map_err(|failure| match x[p].iter().all(|x| x.is_finite()) {
             true => Breakdown::NoBasis { particle: p, failure },
             false => Breakdown::NotFinite { particle: p, symbol: "position" },
         })?;
+        shape.end_row();
     }
     shape.count();
     Ok(())
 }
-// ANCHOR_END: scattered
 
-/// The row of one particle: the search widens until its nodes enclose it.
-fn local_max_ent_row<const D: usize>(
+/// Writes the row of one particle: the search widens until its nodes enclose it.
+fn row_among_nodes<const D: usize>(
     shape: &mut Shape<D>,
     scratch: &mut Scratch<D>,
     lambda: &mut SVector<f64, D>,
-    gamma: f64,
-    mut reach: f64,
-    Places { x: nodes, h }: Places<D>,
+    Width { gamma, mut reach }: Width,
+    nodes: Places<D>,
     x_p: &SVector<f64, D>,
 ) -> Result<(), Failure> {
-    let Scratch { lme, nodes: seen, bins, cost } = scratch;
+    let Scratch { lme, bins, cost } = scratch;
+    let place = x_p.component_div(nodes.h);
     let mut widenings = 0;
     *lambda = loop {
-        seen.clear();
-        let (mut nearest, mut least) = (0, f64::INFINITY);
-        for a in bins.near(&x_p.component_div(h), reach) {
-            let xi = (x_p - nodes[a]).component_div(h);
-            let square = xi.dot(&xi);
-            cost.candidates += 1;
-            if square <= reach * reach {
-                seen.push(a);
-                if square < least {
-                    (nearest, least) = (a, square);
-                }
-            }
-        }
-        lme.clear(false);
-        for &a in seen.iter() {
-            let offset = (nodes[nearest] - nodes[a]).component_div(h);
-            lme.push((x_p - nodes[a]).component_div(h), offset);
-        }
-        match lme.evaluate(gamma, [*lambda, SVector::zeros()]) {
-            Err(_) if widenings < WIDENINGS && seen.len() < nodes.len() => {
+        let near = bins.near(&place, reach);
+        see(lme, nodes, x_p, reach, near.inspect(|_| cost.candidates += 1));
+        match max_ent_row(shape, lme, gamma, nodes.h, [*lambda, SVector::zeros()]) {
+            Err(_) if widenings < WIDENINGS && lme.nodes() < nodes.x.len() => {
                 widenings += 1;
                 reach *= WIDER;
             }
             answer => break answer?,
         }
     };
-    for ((a, N), grad) in seen.iter().zip(&lme.p).zip(&lme.grad) {
-        shape.push(*a, *N, grad.component_div(h));
-    }
-    shape.end_row();
     Ok(())
 }
+// ANCHOR_END: scattered
 
-/// The two nodes beside x_p, in 1D, where nodes stand in the order of their
-/// numbers.
+/// Shows to `lme` those of the nodes `near` that are within `reach` = R/h of x, with offsets
+/// from the nearest.
+fn see<const D: usize>(
+    lme: &mut Lme<D>,
+    Places { x: nodes, h }: Places<D>,
+    x: &SVector<f64, D>,
+    reach: f64,
+    near: impl Iterator<Item = usize>,
+) {
+    lme.clear(false);
+    let (mut nearest, mut least) = (0, f64::INFINITY);
+    for a in near {
+        let xi = (x - nodes[a]).component_div(h);
+        let square = xi.dot(&xi);
+        if square <= reach * reach {
+            lme.push(a, xi, SVector::zeros());
+            if square < least {
+                (nearest, least) = (a, square);
+            }
+        }
+    }
+    lme.set_offsets(|a| (nodes[nearest] - nodes[a]).component_div(h));
+}
+
+/// What a point sees: node, N (–) and ∇N (1/m).
+pub type Values<const D: usize> = Vec<(usize, f64, SVector<f64, D>)>;
+
+/// Evaluates local max-ent at one point among a list of nodes: those within R of x, as
+/// (node, N, ∇N), and λ (1/m).
+///
+/// `spacing` is the h (m) of γ = βh². Errors: [`Failure`].
+pub fn values_at<const D: usize>(
+    nodes: &[SVector<f64, D>],
+    spacing: f64,
+    gamma: f64,
+    cutoff: f64,
+    x: &SVector<f64, D>,
+) -> Result<(Values<D>, SVector<f64, D>), Failure> {
+    if nodes.iter().chain([x]).any(|place| place.iter().any(|x| !x.is_finite())) {
+        return Err(Failure::NotFinite);
+    }
+    let (mut lme, mut shape) = (Lme::default(), Shape::blank(0));
+    let h = &SVector::repeat(spacing);
+    let places = Places { x: nodes, h };
+    see(&mut lme, places, x, radius(gamma, cutoff), 0..nodes.len());
+    let lambda = max_ent_row(&mut shape, &mut lme, gamma, h, [SVector::zeros()])?;
+    shape.end_row();
+    Ok((shape.of(0).map(|(I, N, grad)| (I, N, *grad)).collect(), lambda / spacing))
+}
+
+/// Writes the row of the two nodes beside x_p, in 1D, where nodes stand in the order of
+/// their numbers.
+///
+/// Errors: [`Failure::OutsideHull`].
 fn linear_row<const D: usize>(
     shape: &mut Shape<D>,
     nodes: &[SVector<f64, D>],
     x_p: &SVector<f64, D>,
-) -> Option<()> {
+) -> Result<(), Failure> {
     let after = nodes.partition_point(|x| x[0] <= x_p[0]).clamp(1, nodes.len() - 1);
     let (low, high) = (nodes[after - 1][0], nodes[after][0]);
     let xi = (x_p[0] - low) / (high - low);
     if !(0.0..=1.0).contains(&xi) {
-        return None;
+        return Err(Failure::OutsideHull);
     }
     let slope = SVector::repeat(1.0 / (high - low));
     shape.push(after - 1, 1.0 - xi, -slope);
     shape.push(after, xi, slope);
-    shape.end_row();
-    Some(())
+    Ok(())
 }

@@ -8,8 +8,6 @@ use crate::method::cost::Cost;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scratch<const D: usize> {
     pub(super) lme: Lme<D>,
-    /// The nodes that the point at hand sees.
-    pub(super) nodes: Vec<usize>,
     /// Nodes that move, sorted for the search.
     pub(super) bins: Bins<D>,
     /// Candidates looked at so far.
@@ -19,6 +17,6 @@ pub struct Scratch<const D: usize> {
 impl<const D: usize> Scratch<D> {
     /// Candidates, exponentials and Newton iterations so far.
     pub fn cost(&self) -> Cost {
-        self.cost + self.lme.cost
+        self.cost + self.lme.cost()
     }
 }

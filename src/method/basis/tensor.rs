@@ -26,9 +26,9 @@ impl Line {
 }
 
 // ANCHOR: tensor
-/// One row of the table from one `Line` for each axis: N_Ip = Π_d N_d, and
+/// Writes one row of the table from one `Line` for each axis: N_Ip = Π_d N_d, and
 /// ∂N_Ip/∂x_i has the slope in place of factor i. The first axis runs fastest.
-pub fn row<const D: usize>(shape: &mut Shape<D>, grid: &Grid<D>, lines: &[Line; D]) {
+pub fn product_row<const D: usize>(shape: &mut Shape<D>, grid: &Grid<D>, lines: &[Line; D]) {
     for at in odometer::<D>(std::array::from_fn(|d| lines[d].len)) {
         let I = grid.node(std::array::from_fn(|d| lines[d].node[at[d]]));
         let N_Ip = (0..D).map(|d| lines[d].N[at[d]]).product();

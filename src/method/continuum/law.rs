@@ -3,18 +3,18 @@
 
 use nalgebra::{SMatrix, SVector};
 
-/// a ⊗ b, the matrix a_i b_j.
+/// Makes the matrix a ⊗ b of the entries a_i b_j.
 pub fn outer<const D: usize>(a: &SVector<f64, D>, b: &SVector<f64, D>) -> SMatrix<f64, D, D> {
     SMatrix::from_fn(|i, j| a[i] * b[j])
 }
 
-/// A·b, row by row.
+/// Applies a matrix to a vector, row by row: A·b.
 pub fn applied<const D: usize>(a: &SMatrix<f64, D, D>, b: &SVector<f64, D>) -> SVector<f64, D> {
     SVector::from_fn(|i, _| (0..D).map(|j| a[(i, j)] * b[j]).sum())
 }
 
 // ANCHOR: strain_rate
-/// (2): ε̇ = ∇ˢv = ½ (∇v + ∇ᵀv).
+/// (2) takes the strain rate from a velocity gradient: ε̇ = ∇ˢv = ½ (∇v + ∇ᵀv).
 ///
 /// `grad_v` D×D (1/s); returns D×D (1/s).
 pub fn symmetric_part<const D: usize>(grad_v: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
@@ -23,7 +23,7 @@ pub fn symmetric_part<const D: usize>(grad_v: &SMatrix<f64, D, D>) -> SMatrix<f6
 // ANCHOR_END: strain_rate
 
 // ANCHOR: elastic
-/// The classical isotropic elasticity tensor D of (3), by its Lamé moduli.
+/// This is the classical isotropic elasticity tensor D of (3), by its Lamé moduli.
 ///
 /// With D = 2 this is plane strain. With D = 1 it is uniaxial *strain*: the
 /// modulus is λ + 2μ, which for ν = 0 is Young's modulus E, the modulus of a
@@ -37,7 +37,7 @@ pub struct LinearElastic {
 }
 
 impl LinearElastic {
-    /// From Young's modulus E > 0 (Pa) and Poisson's ratio −1 < ν < ½ (–).
+    /// Makes the law from Young's modulus E > 0 (Pa) and Poisson's ratio −1 < ν < ½ (–).
     pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Self {
         let (e, nu) = (youngs_modulus, poisson_ratio);
         LinearElastic {
@@ -46,12 +46,12 @@ impl LinearElastic {
         }
     }
 
-    /// λ + 2μ (Pa), the modulus of a plane wave, c = √((λ + 2μ) / ρ).
+    /// Gives λ + 2μ (Pa), the modulus of a plane wave, which travels at c = √((λ + 2μ) / ρ).
     pub fn p_wave_modulus(&self) -> f64 {
         self.lambda + 2.0 * self.mu
     }
 
-    /// (3) over one step: Δσ = D : Δε = λ tr(Δε) 1 + 2μ Δε  (Pa).
+    /// (3) gives the stress increment of a step: Δσ = D : Δε = λ tr(Δε) 1 + 2μ Δε  (Pa).
     pub fn stress_increment<const D: usize>(
         &self,
         d_eps: &SMatrix<f64, D, D>,
@@ -59,7 +59,7 @@ impl LinearElastic {
         SMatrix::identity() * (self.lambda * d_eps.trace()) + d_eps * (2.0 * self.mu)
     }
 
-    /// ½ σ : D⁻¹ : σ, the elastic energy per volume (J/m³); (3) inverted gives
+    /// Gives ½ σ : D⁻¹ : σ, the elastic energy per volume (J/m³); (3) inverted says
     /// D⁻¹ : σ = (σ − λ tr(σ) / (dλ + 2μ) 1) / 2μ in d dimensions.
     pub fn energy_density<const D: usize>(&self, sigma: &SMatrix<f64, D, D>) -> f64 {
         let share = self.lambda / (D as f64 * self.lambda + 2.0 * self.mu);
@@ -70,7 +70,7 @@ impl LinearElastic {
 // ANCHOR_END: elastic
 
 // ANCHOR: increment
-/// f = 1 + G and det f of a displacement gradient G of one step (–).
+/// Gives f = 1 + G and det f of a displacement gradient G of one step (–).
 pub fn increment<const D: usize>(G: &SMatrix<f64, D, D>) -> (SMatrix<f64, D, D>, f64) {
     let f = SMatrix::<f64, D, D>::identity() + G;
     let minor =
@@ -86,8 +86,8 @@ pub fn increment<const D: usize>(G: &SMatrix<f64, D, D>) -> (SMatrix<f64, D, D>,
     (f, J)
 }
 
-/// Δε = sym(G (1 + G/2)⁻¹), the strain increment at the middle of a step of finite
-/// size (–); `None` where 1 + G/2 has no inverse.
+/// Gives Δε = sym(G (1 + G/2)⁻¹), the strain increment at the middle of a step of
+/// finite size (–); `None` where 1 + G/2 has no inverse.
 ///
 /// In 1D it is G/(1 + G/2), the logarithm ln(1 + G) but for G³/12. Of a rotation by
 /// less than half a turn it is zero.
@@ -98,7 +98,7 @@ pub fn midpoint_strain<const D: usize>(G: &SMatrix<f64, D, D>) -> Option<SMatrix
 // ANCHOR_END: increment
 
 // ANCHOR: density
-/// (17) over one step: ρ ← ρ / (1 + tr Δε)  (kg/m³).
+/// (17) gives the density after a step: ρ ← ρ / (1 + tr Δε)  (kg/m³).
 ///
 /// `None` when 1 + tr Δε ≤ 0: nothing would be left of the volume.
 pub fn density<const D: usize>(rho: f64, d_eps: &SMatrix<f64, D, D>) -> Option<f64> {

@@ -4,8 +4,7 @@ use super::state::Particles;
 use crate::method::exact::manufactured::Manufactured;
 use nalgebra::SVector;
 
-/// What acts on the particles from outside; a scene without loads has none of
-/// this.
+/// Loads act on the particles from outside; a scene without loads has none of this.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loads<const D: usize> {
     pub body: Option<BodyForce<D>>,
@@ -21,7 +20,7 @@ pub enum BodyForce<const D: usize> {
     Manufactured { solution: Manufactured, X: Vec<f64> },
 }
 
-/// Particles of the layers behind the loaded sides.
+/// A traction acts on the particles of the layer behind each loaded side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traction<const D: usize> {
     /// Particle p, and the full force on it (N): m_p h⁻¹ t^s_p of (11) is the
@@ -32,13 +31,13 @@ pub struct Traction<const D: usize> {
 }
 
 // ANCHOR: loads
-/// min(t/T, 1), and 1 for T = 0: how much of a load acts at time `t`.
+/// Says how much of a load acts at time `t`: min(t/T, 1), and 1 for T = 0.
 pub fn ramp(t: f64, T: f64) -> f64 {
     if t < T { t / T } else { 1.0 }
 }
 
 impl<const D: usize> BodyForce<D> {
-    /// b_p at time `t` (m/s²).
+    /// Gives b_p at time `t` (m/s²).
     pub fn at(&self, p: usize, t: f64) -> SVector<f64, D> {
         match self {
             BodyForce::Uniform { b, ramp: T } => b * ramp(t, *T),
@@ -50,7 +49,7 @@ impl<const D: usize> BodyForce<D> {
 }
 
 impl<const D: usize> Traction<D> {
-    /// The loaded particles with the force on each (N).
+    /// Lists the loaded particles with the force on each at time `t` (N).
     pub fn at(&self, t: f64) -> impl Iterator<Item = (usize, SVector<f64, D>)> {
         let share = ramp(t, self.ramp);
         self.layer.iter().map(move |(p, force)| (*p, force * share))
@@ -59,7 +58,7 @@ impl<const D: usize> Traction<D> {
 // ANCHOR_END: loads
 
 impl<const D: usize> Loads<D> {
-    /// Σ_p f_p · Δx_p, the work of the loads over a step from `t` to `t + dt` (J),
+    /// Gives Σ_p f_p · Δx_p, the work of the loads over a step from `t` to `t + dt` (J),
     /// with the mean of both ends; `before` holds x_p at `t` (m).
     ///
     /// Taken with what the particles have moved by, not with their velocity:

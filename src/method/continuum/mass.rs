@@ -19,7 +19,7 @@ const LIGHT: f64 = 0.25;
 /// A pivot below this share of its diagonal entry counts as zero.
 const SINGULAR: f64 = 1e-12;
 
-/// The mass matrix that the nodes' velocities and accelerations are solved with.
+/// Velocities and accelerations of the nodes are solved with one of two mass matrices.
 #[derive(Clone, Debug)]
 pub enum MassMatrix<const D: usize> {
     /// m_I of (18), which the nodes hold themselves.
@@ -44,8 +44,8 @@ impl<const D: usize> MassMatrix<D> {
         }
     }
 
-    /// `out`_I = m_I Σ_J (m⁻¹)_IJ q_J, which is q_I itself with the lumped matrix; see
-    /// [`ConsistentMass::solve`].
+    /// Solves with the matrix: `out`_I = m_I Σ_J (m⁻¹)_IJ q_J, which is q_I itself with the
+    /// lumped one.
     pub fn solve(&mut self, out: &mut [SVector<f64, D>], q: &[SVector<f64, D>], m: &[f64]) {
         match self {
             MassMatrix::Lumped => out.copy_from_slice(q),
@@ -53,7 +53,7 @@ impl<const D: usize> MassMatrix<D> {
         }
     }
 
-    /// Factorisations and solutions so far.
+    /// Counts factorisations and solutions so far.
     pub fn cost(&self) -> Cost {
         match self {
             MassMatrix::Lumped => Cost::default(),
@@ -62,7 +62,7 @@ impl<const D: usize> MassMatrix<D> {
     }
 }
 
-/// m_IJ with its Cholesky factors, one for each different set of fixed nodes.
+/// m_IJ stands here with its Cholesky factors, one for each different set of fixed nodes.
 #[derive(Clone, Debug)]
 pub struct ConsistentMass<const D: usize> {
     /// Which nodes share a particle; every node shares one with itself.
@@ -83,7 +83,7 @@ pub struct ConsistentMass<const D: usize> {
     pub cost: Cost,
 }
 
-/// The equations of the components that share one set of fixed nodes.
+/// Components that share one set of fixed nodes share their equations.
 #[derive(Clone, Debug)]
 struct System {
     fixed: Vec<bool>,
@@ -91,7 +91,7 @@ struct System {
 }
 
 impl<const D: usize> ConsistentMass<D> {
-    /// An empty matrix for `nodes` nodes, of which those in `fixed` have no
+    /// Makes an empty matrix for `nodes` nodes, of which those in `fixed` have no
     /// velocity component i.
     pub fn blank(nodes: usize, fixed: &[(usize, usize)]) -> Self {
         let mut systems: Vec<System> = Vec::new();
@@ -119,7 +119,7 @@ impl<const D: usize> ConsistentMass<D> {
     }
 
     // ANCHOR: consistent_mass
-    /// (13): m_IJ = Σ_p N_Ip m_p N_Jp  (kg), factorised; `m` is m_I (kg).
+    /// Assembles (13), m_IJ = Σ_p N_Ip m_p N_Jp  (kg), and factorises it; `m` is m_I (kg).
     ///
     /// Errors: [`Breakdown::SingularMass`] when it is not positive definite: the particles
     /// do not determine the velocity of every node.
@@ -144,7 +144,7 @@ impl<const D: usize> ConsistentMass<D> {
         Ok(())
     }
 
-    /// Which nodes have m_II = Σ_p N_Ip m_p N_Ip below LIGHT^D m_I.
+    /// Finds the light nodes, those with m_II = Σ_p N_Ip m_p N_Ip below LIGHT^D m_I.
     fn find_light(&mut self, particle: &Particles<D>, shape: &Shape<D>, m: &[f64]) {
         self.diagonal.fill(0.0);
         for (I, p, N_Ip, _) in shape.pairs() {
@@ -156,7 +156,7 @@ impl<const D: usize> ConsistentMass<D> {
         }
     }
 
-    /// Σ_p over all pairs of nodes of a particle; false where the pattern lacks
+    /// Sums over all pairs of nodes of each particle; false where the pattern lacks
     /// one. A pair with a light node goes to the diagonal.
     fn sum(&mut self, particle: &Particles<D>, shape: &Shape<D>) -> bool {
         self.values.fill(0.0);
@@ -171,7 +171,7 @@ impl<const D: usize> ConsistentMass<D> {
     }
     // ANCHOR_END: consistent_mass
 
-    /// The pattern of this table of shape functions; the factors go with the
+    /// Makes the pattern of this table of shape functions; the factors go with the
     /// old one.
     fn couple(&mut self, shape: &Shape<D>, nodes: usize) {
         let mut coupled: Vec<Vec<usize>> = (0..nodes).map(|I| vec![I]).collect();
@@ -231,8 +231,8 @@ impl<const D: usize> ConsistentMass<D> {
     }
 
     // ANCHOR: solve
-    /// `out`_I = m_I Σ_J (m⁻¹)_IJ q_J for a nodal momentum or force `q` that is zero where
-    /// the boundary is fixed; `m` is m_I (kg).
+    /// Solves (12): `out`_I = m_I Σ_J (m⁻¹)_IJ q_J for a nodal momentum or force `q` that is
+    /// zero where the boundary is fixed; `m` is m_I (kg).
     ///
     /// Afterwards `out`_I / m_I is the nodal velocity or acceleration that solves (12), so
     /// that all that follows is written once for both mass matrices. Since Σ_J m_IJ = m_I,
@@ -254,7 +254,7 @@ impl<const D: usize> ConsistentMass<D> {
     // ANCHOR_END: solve
 }
 
-/// Where m_IJ stands among the values of a matrix with this pattern.
+/// Says where m_IJ stands among the values of a matrix with this pattern.
 fn place(pattern: &SparsityPattern, I: usize, J: usize) -> Option<usize> {
     pattern.lane(J).binary_search(&I).ok().map(|n| pattern.major_offsets()[J] + n)
 }

@@ -3,16 +3,16 @@
 use crate::method::cost::Cost;
 use nalgebra::SVector;
 
-/// One entry of the table: node I, N_Ip and ∇N_Ip.
+/// A pair of the table holds node I, N_Ip and ∇N_Ip.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Entry<const D: usize> {
+struct Pair<const D: usize> {
     I: usize,
     N: f64,
     grad_N: SVector<f64, D>,
 }
 
 // ANCHOR: shape
-/// N_Ip and ∇N_Ip for all particles p and the nodes I that each one sees.
+/// The table holds N_Ip and ∇N_Ip for all particles p and the nodes I that each one sees.
 ///
 /// Rebuilt whenever the particles move. Within a row the nodes keep the order
 /// in which the basis names them, so every sum has one fixed order.
@@ -20,14 +20,14 @@ struct Entry<const D: usize> {
 pub struct Shape<const D: usize> {
     /// Row p is `entry[start[p]..start[p + 1]]`.
     start: Vec<usize>,
-    entry: Vec<Entry<D>>,
+    entry: Vec<Pair<D>>,
     /// Rows and pairs of all tables so far.
     pub cost: Cost,
 }
 // ANCHOR_END: shape
 
 impl<const D: usize> Shape<D> {
-    /// A table in which each of `particles` sees no node.
+    /// Makes a table in which each of `particles` sees no node.
     pub fn blank(particles: usize) -> Self {
         Shape { start: vec![0; particles + 1], entry: Vec::new(), cost: Cost::default() }
     }
@@ -40,7 +40,7 @@ impl<const D: usize> Shape<D> {
 
     /// Adds N_Ip (–) and ∇N_Ip (1/m) to the row that is being written.
     pub fn push(&mut self, I: usize, N: f64, grad_N: SVector<f64, D>) {
-        self.entry.push(Entry { I, N, grad_N });
+        self.entry.push(Pair { I, N, grad_N });
     }
 
     /// Ends the row of the current particle.
@@ -54,19 +54,19 @@ impl<const D: usize> Shape<D> {
         self.cost.particle_node_pairs += self.entry.len() as u64;
     }
 
-    /// Number of particle-node pairs.
+    /// Counts the particle-node pairs.
     pub fn len(&self) -> usize {
         self.entry.len()
     }
 
     // ANCHOR: pairs
-    /// Σ_p Σ_I: every pair as (I, p, N_Ip, ∇N_Ip), particle by particle.
+    /// Σ_p Σ_I runs over every pair as (I, p, N_Ip, ∇N_Ip), particle by particle.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize, f64, &SVector<f64, D>)> {
         (0..self.start.len() - 1)
             .flat_map(move |p| self.of(p).map(move |(I, N_Ip, grad_N_Ip)| (I, p, N_Ip, grad_N_Ip)))
     }
 
-    /// Σ_I for one particle: its pairs as (I, N_Ip, ∇N_Ip).
+    /// Σ_I runs over the nodes of one particle as (I, N_Ip, ∇N_Ip).
     pub fn of(&self, p: usize) -> impl Iterator<Item = (usize, f64, &SVector<f64, D>)> {
         self.entry[self.start[p]..self.start[p + 1]]
             .iter()

@@ -8,7 +8,7 @@ use crate::method::cost::Cost;
 use nalgebra::{SMatrix, SVector};
 
 // ANCHOR: particles
-/// Material points: everything that is remembered from step to step.
+/// Particles are the material points: they hold all that is remembered between steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Particles<const D: usize> {
     /// m_p, mass (kg).
@@ -34,8 +34,8 @@ pub struct Particles<const D: usize> {
 // ANCHOR_END: particles
 
 // ANCHOR: nodes
-/// Grid points: scratch paper, wiped in step 2 of every time step. With OTM they
-/// are the body's own and carry its motion.
+/// Nodes are scratch paper, wiped in step 2 of every time step. With OTM they are the
+/// body's own and carry its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes<const D: usize> {
     /// m_I, lumped mass (kg).
@@ -60,7 +60,7 @@ pub struct Nodes<const D: usize> {
 }
 // ANCHOR_END: nodes
 
-/// What carries the body's mass and motion: its masses, places and velocities.
+/// Carriers hold the body's mass and motion: masses, places and velocities.
 pub struct Carriers<'a, const D: usize> {
     pub m: &'a [f64],
     pub x: &'a [SVector<f64, D>],
@@ -68,18 +68,18 @@ pub struct Carriers<'a, const D: usize> {
 }
 
 impl<const D: usize> Particles<D> {
-    /// The particles as carriers of mass and motion.
+    /// Takes the particles as carriers of mass and motion.
     pub fn carriers(&self) -> Carriers<'_, D> {
         Carriers { m: &self.m, x: &self.x, v: &self.v }
     }
 
-    /// Bytes of state that one particle carries: 48 in 1D, where every tensor
+    /// One particle carries so many bytes of state: 48 in 1D, where every tensor
     /// is a single number.
     pub const BYTES: usize = 2 * size_of::<f64>()
         + 2 * size_of::<SVector<f64, D>>()
         + 2 * size_of::<SMatrix<f64, D, D>>();
 
-    /// Particles without mass, at rest and free of stress at positions `x` (m), with
+    /// Makes particles without mass, at rest and free of stress at positions `x` (m), with
     /// density `rho` (kg/m³).
     pub fn at_rest(x: Vec<SVector<f64, D>>, rho: f64) -> Self {
         let n = x.len();
@@ -96,14 +96,14 @@ impl<const D: usize> Particles<D> {
         }
     }
 
-    /// N_p, the number of particles.
+    /// Gives N_p, the number of particles.
     pub fn len(&self) -> usize {
         self.m.len()
     }
 }
 
 impl<const D: usize> Nodes<D> {
-    /// `n` nodes that carry nothing.
+    /// Makes `n` nodes that carry nothing.
     pub fn blank(n: usize) -> Self {
         Nodes {
             m: vec![0.0; n],
@@ -119,7 +119,7 @@ impl<const D: usize> Nodes<D> {
         }
     }
 
-    /// N_n, the number of nodes.
+    /// Gives N_n, the number of nodes.
     pub fn len(&self) -> usize {
         self.m.len()
     }

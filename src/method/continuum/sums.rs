@@ -8,7 +8,7 @@ use super::state::{Nodes, Particles};
 use nalgebra::{SMatrix, SVector};
 
 // ANCHOR: lumped_mass
-/// (13) lumped by rows: m_I += Σ_p m_p N_Ip  (kg).
+/// (13), lumped by rows, adds m_I += Σ_p m_p N_Ip  (kg).
 ///
 /// Since Σ_J N_Jp = 1, the row sum of m_IJ = Σ_p N_Ip m_p N_Jp is this.
 pub fn lumped_mass<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, shape: &Shape<D>) {
@@ -19,7 +19,7 @@ pub fn lumped_mass<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>,
 // ANCHOR_END: lumped_mass
 
 // ANCHOR: momentum
-/// p_I += Σ_p m_p v_p N_Ip  (kg m/s).
+/// The particles bring their momentum: p_I += Σ_p m_p v_p N_Ip  (kg m/s).
 pub fn momentum<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, shape: &Shape<D>) {
     for (I, p, N_Ip, _) in shape.pairs() {
         node.p[I] += particle.v[p] * (particle.m[p] * N_Ip);
@@ -28,7 +28,7 @@ pub fn momentum<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, sh
 // ANCHOR_END: momentum
 
 // ANCHOR: internal_force
-/// (14): f_I −= Σ_p σ_p ∇N_Ip m_p / ρ_p  (N).
+/// (14) adds the internal forces: f_I −= Σ_p σ_p ∇N_Ip m_p / ρ_p  (N).
 pub fn internal_force<const D: usize>(
     node: &mut Nodes<D>,
     particle: &Particles<D>,
@@ -42,7 +42,8 @@ pub fn internal_force<const D: usize>(
 // ANCHOR_END: internal_force
 
 // ANCHOR: external_force
-/// (15): f_I += Σ_p N_Ip m_p b_p + Σ_p N_Ip m_p h⁻¹ t^s_p  (N) at time `t` (s).
+/// (15) adds the loads of time `t` (s):
+/// f_I += Σ_p N_Ip m_p b_p + Σ_p N_Ip m_p h⁻¹ t^s_p  (N).
 pub fn external_force<const D: usize>(
     node: &mut Nodes<D>,
     particle: &Particles<D>,
@@ -71,7 +72,7 @@ pub fn external_force<const D: usize>(
 // ANCHOR_END: external_force
 
 // ANCHOR: velocity_gradient
-/// The gradient inside (16): ∇v at particle p, Σ_I (v_I − v_0) ⊗ ∇N_Ip  (1/s).
+/// Gives the gradient inside (16), ∇v at particle p: Σ_I (v_I − v_0) ⊗ ∇N_Ip  (1/s).
 ///
 /// v_0 is the velocity of the first of the particle's nodes. It may be taken
 /// off because Σ_I ∇N_Ip = 0; then nodes that move alike give exactly zero,
@@ -95,7 +96,7 @@ pub fn velocity_gradient<const D: usize>(
 // ANCHOR_END: velocity_gradient
 
 // ANCHOR: interpolate
-/// Σ_I q_I N_Ip: a nodal field at particle p, in the unit of q.
+/// Interpolates a nodal field to particle p: Σ_I q_I N_Ip, in the unit of q.
 pub fn interpolate<const D: usize>(
     q: &[SVector<f64, D>],
     shape: &Shape<D>,
@@ -110,7 +111,7 @@ pub fn interpolate<const D: usize>(
 // ANCHOR_END: interpolate
 
 // ANCHOR: to_particle_divided
-/// (20) (21): Σ_I (q_I / m_I) N_Ip, as forward Euler has it. Here a tiny mass
+/// (20) and (21) carry Σ_I (q_I / m_I) N_Ip to particle p. Here a tiny mass
 /// divides a force that need not be tiny; see [`to_particle`].
 pub fn to_particle_divided<const D: usize>(
     q: &[SVector<f64, D>],
@@ -129,7 +130,7 @@ pub fn to_particle_divided<const D: usize>(
 // ANCHOR_END: to_particle_divided
 
 // ANCHOR: to_particle
-/// (19): Σ_I q_I N_Ip / m_I, a nodal momentum or force carried to particle p.
+/// (19) carries a nodal momentum or force to particle p: Σ_I q_I N_Ip / m_I.
 ///
 /// `q` (kg m/s) gives m/s, `q` (N) gives m/s². The nodal sum q_I is never
 /// divided by m_I alone: N_Ip / m_I stays at or below 1 / m_p however small

@@ -1,6 +1,6 @@
 //! What an exact solution gives at a point.
 
-/// v (m/s), σ (Pa) and u (m) at one material point and time.
+/// These are v (m/s), σ (Pa) and u (m) at one material point and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fields {
     pub velocity: f64,

@@ -17,20 +17,20 @@ pub struct Load {
 
 impl Load {
     // ANCHOR: ramp_integrals
-    /// ∫ over the time from 0 to t.
+    /// Integrates the load over the time from 0 to t.
     fn once(&self, t: f64) -> f64 {
         let T = self.ramp;
         self.value * if t < T { t * t / (2.0 * T) } else { t - 0.5 * T }
     }
 
-    /// ∫∫, the integral of [`Load::once`].
+    /// Integrates [`Load::once`] once more.
     fn twice(&self, t: f64) -> f64 {
         let T = self.ramp;
         let grown = T * T / 6.0 + 0.5 * (t * t - T * T) - 0.5 * T * (t - T);
         self.value * if t < T { t * t * t / (6.0 * T) } else { grown }
     }
 
-    /// The load at t ≥ 0.
+    /// Gives the load at t ≥ 0.
     fn now(&self, t: f64) -> f64 {
         self.value * crate::method::continuum::loads::ramp(t, self.ramp)
     }
@@ -56,14 +56,14 @@ pub struct Forced {
 
 impl Forced {
     // ANCHOR: forced
-    /// v, σ and u at 0 ≤ `x` ≤ L (m) and `t` ≥ 0 (s), with as many terms as
+    /// Gives v, σ and u at 0 ≤ `x` ≤ L (m) and `t` ≥ 0 (s), with as many terms as
     /// there are reflections.
     pub fn at(&self, x: f64, t: f64) -> Fields {
         let (I, II) = (self.invariant(Family::I, x, t), self.invariant(Family::II, x, t));
         Fields { velocity: I.0 + II.0, stress: self.Z * (II.0 - I.0), displacement: I.1 + II.1 }
     }
 
-    /// R at (x, t), and ∫ R dt at x. Followed back from (x, t), the
+    /// Gives R at (x, t), and ∫ R dt at x. Followed back from (x, t), the
     /// characteristic collects half of the body force on every piece, and t/Z
     /// at every loaded end.
     fn invariant(&self, family: Family, x: f64, t: f64) -> (f64, f64) {

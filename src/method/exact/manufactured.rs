@@ -4,7 +4,7 @@
 use super::fields::Fields;
 use super::mode::Mode;
 
-/// u(X, t) = A φ(X) sin ωt with ω = ck, for the law σ = E ln F, into which (3)
+/// The motion is u(X, t) = A φ(X) sin ωt with ω = ck, for the law σ = E ln F, into which (3)
 /// integrates in one dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Manufactured {
@@ -19,12 +19,12 @@ pub struct Manufactured {
 
 impl Manufactured {
     // ANCHOR: manufactured
-    /// F = 1 + ∂u/∂X.
+    /// Gives F = 1 + ∂u/∂X.
     fn stretch(&self, X: f64, t: f64) -> f64 {
         1.0 + self.amplitude * self.mode.slope(X) * libm::sin(self.c * self.mode.k * t)
     }
 
-    /// v, σ = E ln F, and u of the material point X (m).
+    /// Gives v, σ = E ln F, and u of the material point X (m).
     pub fn at(&self, X: f64, t: f64) -> Fields {
         let omega = self.c * self.mode.k;
         let shape = self.amplitude * self.mode.shape(X);
@@ -35,7 +35,8 @@ impl Manufactured {
         }
     }
 
-    /// b = ∂²u/∂t² − (∂σ/∂X)/ρ_0 = ω² u (1/F − 1)  (m/s²), since φ'' = −k² φ.
+    /// The force that keeps it going is b = ∂²u/∂t² − (∂σ/∂X)/ρ_0 = ω² u (1/F − 1)
+    /// (m/s²), since φ'' = −k² φ.
     pub fn body_force(&self, X: f64, t: f64) -> f64 {
         let omega = self.c * self.mode.k;
         let u = self.amplitude * self.mode.shape(X) * libm::sin(omega * t);

@@ -24,7 +24,7 @@ pub enum Exact {
 }
 
 impl Exact {
-    /// The latest time (s) at which the solution is right to ten digits or more:
+    /// Gives the latest time (s) at which the solution is right to ten digits or more:
     /// 2^50 L/c for a bar without loads that is thrown in patches, else 10⁴ L/c.
     pub fn latest(&self) -> f64 {
         match self {
@@ -34,7 +34,7 @@ impl Exact {
         }
     }
 
-    /// v, σ and u of the material point that stood at `x` (m) from the body's
+    /// Gives v, σ and u of the material point that stood at `x` (m) from the body's
     /// lower corner at t = 0, at time `t` >= 0 (s).
     pub fn at(&self, x: f64, t: f64) -> Fields {
         match self {

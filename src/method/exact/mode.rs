@@ -3,7 +3,7 @@
 use super::fields::Fields;
 use super::riemann::End;
 
-/// The n-th natural mode of a bar: φ = sin kx where x = 0 is fixed, else cos kx,
+/// The n-th natural mode of a bar is φ = sin kx where x = 0 is fixed, else cos kx,
 /// with k = nπ/L for two like ends and k = (2n − 1)π/2L for a fixed and a free one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
@@ -14,24 +14,24 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// Mode `number` ≥ 1 of a bar of `length` (m).
+    /// Makes mode `number` ≥ 1 of a bar of `length` (m).
     pub fn new(ends: [End; 2], number: usize, length: f64) -> Self {
         let half_waves = if ends[0] == ends[1] { number as f64 } else { number as f64 - 0.5 };
         Mode { k: half_waves * std::f64::consts::PI / length, fixed: ends[0] == End::Fixed }
     }
 
-    /// φ(x).
+    /// Gives φ(x).
     pub fn shape(&self, x: f64) -> f64 {
         if self.fixed { libm::sin(self.k * x) } else { libm::cos(self.k * x) }
     }
 
-    /// φ'(x) (1/m).
+    /// Gives φ'(x) (1/m).
     pub fn slope(&self, x: f64) -> f64 {
         self.k * if self.fixed { libm::cos(self.k * x) } else { -libm::sin(self.k * x) }
     }
 }
 
-/// A bar that vibrates in one mode, thrown from rest with V φ(x).
+/// A bar vibrates in one mode when it is thrown from rest with V φ(x).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vibration {
     pub mode: Mode,
@@ -45,7 +45,7 @@ pub struct Vibration {
 
 impl Vibration {
     // ANCHOR: vibration
-    /// u = V/ω φ sin ωt, v = V φ cos ωt, σ = E V/ω φ' sin ωt, with ω = ck.
+    /// The fields are u = V/ω φ sin ωt, v = V φ cos ωt, σ = E V/ω φ' sin ωt, with ω = ck.
     pub fn at(&self, x: f64, t: f64) -> Fields {
         let omega = self.c * self.mode.k;
         let amplitude = self.velocity / omega * libm::sin(omega * t);

@@ -55,17 +55,17 @@ pub struct Bar {
 }
 
 // ANCHOR: eigen
-/// A of (48): φ = (σ, v), ∂φ/∂t + A ∂φ/∂x = 0.
+/// Makes A of (48): with φ = (σ, v) it is ∂φ/∂t + A ∂φ/∂x = 0.
 pub fn coupling(E: f64, rho: f64) -> Matrix2<f64> {
     Matrix2::new(0.0, -E, -1.0 / rho, 0.0)
 }
 
-/// P of (49): its columns are the eigenvectors of A, for +c and for −c.
+/// Makes P of (49), whose columns are the eigenvectors of A, for +c and for −c.
 pub fn eigenvectors(Z: f64) -> Matrix2<f64> {
     Matrix2::new(-Z, Z, 1.0, 1.0)
 }
 
-/// P⁻¹, with Z = √(Eρ) (Pa s/m).
+/// Makes P⁻¹, with Z = √(Eρ) (Pa s/m).
 pub fn eigenvectors_inverse(Z: f64) -> Matrix2<f64> {
     Matrix2::new(-1.0 / Z, 1.0, 1.0 / Z, 1.0) * 0.5
 }
@@ -73,7 +73,7 @@ pub fn eigenvectors_inverse(Z: f64) -> Matrix2<f64> {
 
 // ANCHOR: reflect
 impl End {
-    /// The ratio of the leaving to the arriving invariant: −1 or +1.
+    /// Gives the ratio of the leaving to the arriving invariant, −1 or +1.
     pub fn reflection(self) -> f64 {
         match self {
             End::Fixed => -1.0,
@@ -83,7 +83,7 @@ impl End {
 }
 
 impl Family {
-    /// The invariant that this one comes from at an end.
+    /// Gives the invariant that this one comes from at an end.
     fn other(self) -> Family {
         match self {
             Family::I => Family::II,
@@ -105,18 +105,18 @@ struct Piece {
 }
 
 impl Bar {
-    /// c = √(E/ρ), (46) (m/s).
+    /// Gives c = √(E/ρ), (46) (m/s).
     pub fn c(&self) -> f64 {
         libm::sqrt(self.modulus / self.density)
     }
 
-    /// Z = √(Eρ) = ρc, the impedance (Pa s/m).
+    /// Gives the impedance Z = √(Eρ) = ρc (Pa s/m).
     pub fn Z(&self) -> f64 {
         self.density * self.c()
     }
 
     // ANCHOR: at
-    /// v, σ and u at 0 ≤ `x` ≤ L (m) and `t` ≥ 0 (s).
+    /// Gives v, σ and u at 0 ≤ `x` ≤ L (m) and `t` ≥ 0 (s).
     pub fn at(&self, x: f64, t: f64) -> Fields {
         let (periods, s) = self.travel(t);
         let R = Vector2::new(self.invariant(Family::I, x, s), self.invariant(Family::II, x, s));
@@ -132,7 +132,7 @@ impl Bar {
     // ANCHOR_END: at
 
     // ANCHOR: travel
-    /// c t as n periods of 4L and a rest ≥ 0: (n, rest (m)). The rest is below 4L,
+    /// Splits c t into n periods of 4L and a rest ≥ 0: (n, rest (m)). The rest is below 4L,
     /// or above by no more than the last digits of c t, and is followed as well.
     ///
     /// 4L is a period of every pair of ends. c and the product c t are carried
@@ -157,14 +157,14 @@ impl Bar {
         }
     }
 
-    /// 2^50 L/c (s). Later, ct in double-double digits no longer resolves a
+    /// Gives 2^50 L/c (s). Later, ct in double-double digits no longer resolves a
     /// bar's length to the last digits of a number.
     pub fn latest(&self) -> f64 {
         libm::exp2(50.0) * self.length / self.c()
     }
     // ANCHOR_END: travel
 
-    /// What all points have moved by after one period (m): 4L/c times the mean
+    /// Says what all points have moved by after one period (m): 4L/c times the mean
     /// velocity of a bar with two free ends, else 0.
     fn drift(&self) -> f64 {
         match self.ends {
@@ -177,7 +177,7 @@ impl Bar {
     }
 
     // ANCHOR: trace_back
-    /// The characteristic of `family` through x, followed back by the path `s`
+    /// Follows the characteristic of `family` through x back by the path `s`
     /// (m) in straight pieces from end to end.
     fn trace_back(&self, mut family: Family, x: f64, s: f64) -> impl Iterator<Item = Piece> {
         let (L, ends) = (self.length, self.ends);
@@ -205,7 +205,7 @@ impl Bar {
         })
     }
 
-    /// The invariant of `family` at x, after the path `s`: (56) with the value
+    /// Gives the invariant of `family` at x, after the path `s`: (56) with the value
     /// at the foot of the characteristic and one sign for each reflection.
     fn invariant(&self, family: Family, x: f64, s: f64) -> f64 {
         self.trace_back(family, x, s)
@@ -215,7 +215,7 @@ impl Bar {
     // ANCHOR_END: trace_back
 
     // ANCHOR: initial
-    /// R at t = 0, (57) (58) with σ = 0 and v of the patch.
+    /// Gives R at t = 0, (57) (58) with σ = 0 and v of the patch.
     fn initial_invariant(&self, family: Family, x: f64) -> f64 {
         let R = eigenvectors_inverse(self.Z()) * Vector2::new(0.0, self.initial_velocity(x));
         match family {
@@ -224,7 +224,7 @@ impl Bar {
         }
     }
 
-    /// v at t = 0 (m/s).
+    /// Gives v at t = 0 (m/s).
     fn initial_velocity(&self, x: f64) -> f64 {
         let covers = |a: &&Patch| a.from <= x && (x < a.to || (x == a.to && x == self.length));
         self.patches.iter().find(covers).map_or(0.0, |a| a.velocity)
@@ -232,7 +232,7 @@ impl Bar {
     // ANCHOR_END: initial
 
     // ANCHOR: displacement
-    /// ∫ R dt over the past, times c (m²/s): u = ∫ v dt = ∫ R^I dt + ∫ R^II dt,
+    /// Integrates R over the past, times c (m²/s): u = ∫ v dt = ∫ R^I dt + ∫ R^II dt,
     /// and along a characteristic dt is ds / c.
     fn travelled(&self, family: Family, x: f64, s: f64) -> f64 {
         let mut sum = 0.0;
@@ -248,7 +248,7 @@ impl Bar {
     // ANCHOR_END: displacement
 
     // ANCHOR: fronts
-    /// Where v and σ jump at time `t`, in ascending order (m).
+    /// Lists the places where v and σ jump at time `t`, in ascending order (m).
     ///
     /// Each jump of the initial velocity sends one front each way. A fixed end
     /// whose material was thrown is such a jump too.

@@ -17,7 +17,7 @@ use crate::method::reading::StressUpdate;
 pub const STEPS: usize = 7;
 
 // ANCHOR: forward_euler
-/// Step `n` of forward Euler, 1 to 7, in the time step from k to k+1; loads are those of
+/// Takes step `n` of forward Euler, 1 to 7, in the time step from k to k+1; loads are those of
 /// k, at `t` (s).
 pub fn forward_step<const D: usize>(
     n: usize,
@@ -57,7 +57,7 @@ pub fn forward_step<const D: usize>(
 // ANCHOR_END: forward_euler
 
 // ANCHOR: corrected_euler
-/// Step `n` of the corrected form, 1 to 7, in the time step from k to k+1; loads are those
+/// Takes step `n` of the corrected form, 1 to 7, in the time step from k to k+1; loads are those
 /// of k, at `t` (s).
 pub fn corrected_step<const D: usize>(
     n: usize,

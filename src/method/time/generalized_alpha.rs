@@ -34,7 +34,7 @@ impl Parameters {
 // ANCHOR_END: alpha_parameters
 
 // ANCHOR: generalized_alpha_start
-/// a_p at k = 0 under loads: that of the forces at once. Without it the old
+/// Gives a_p at k = 0 under loads: that of the forces at once. Without it the old
 /// acceleration of the first step would be 0, and the momentum off by ½ F Δt for
 /// ever.
 pub fn start<const D: usize>(
@@ -88,7 +88,7 @@ pub fn step<const D: usize>(
     Ok(())
 }
 
-/// m_I ((1 − α_m) a_I^{k+1} + α_m a_I^k) = f_I^k.
+/// Solves m_I ((1 − α_m) a_I^{k+1} + α_m a_I^k) = f_I^k for a_I^{k+1}.
 pub fn balance_accelerations<const D: usize>(node: &mut Nodes<D>, parameters: &Parameters) {
     let alpha_m = parameters.alpha_m;
     for I in 0..node.len() {
@@ -99,7 +99,7 @@ pub fn balance_accelerations<const D: usize>(node: &mut Nodes<D>, parameters: &P
     }
 }
 
-/// (24) v_p += Δt Σ N_Ip ((1 − γ) a_I^k + γ a_I^{k+1}); (25)
+/// Moves the particles: (24) v_p += Δt Σ N_Ip ((1 − γ) a_I^k + γ a_I^{k+1}); (25)
 /// x_p += Σ N_Ip (Δt v_I + Δt² ((½ − β) a_I^k + β a_I^{k+1})); (26)
 /// a_p = Σ N_Ip a_I^{k+1}.
 pub fn move_particles<const D: usize>(
@@ -123,7 +123,7 @@ pub fn move_particles<const D: usize>(
     }
 }
 
-/// The nodal displacement inside (25), divided by Δt, in place of v_I.
+/// Puts the nodal displacement inside (25), divided by Δt, in place of v_I.
 pub fn average_velocity<const D: usize>(node: &mut Nodes<D>, parameters: &Parameters, dt: f64) {
     let beta = parameters.beta;
     for I in 0..node.len() {

@@ -11,7 +11,7 @@ use super::choice::{Integrator, Method};
 use super::model::{Model, State};
 
 // ANCHOR: advance
-/// What a scheme needs at k = 0: with Newmark nodal values, by one time step with
+/// Prepares what a scheme needs at k = 0: with Newmark nodal values, by one time step with
 /// Δt = 0, in which nothing moves; with generalized-α the acceleration of loads
 /// that act at once; with the others nothing.
 ///
@@ -35,7 +35,7 @@ pub fn start<const D: usize>(
     steps::finite(&state.particle)
 }
 
-/// One time step, which ends at `t` (s); `after` sees the state after each step of the
+/// Takes one time step, which ends at `t` (s); `after` sees the state after each step of the
 /// scheme, with its number.
 pub fn advance<const D: usize>(
     state: &mut State<D>,
@@ -62,7 +62,7 @@ fn all_steps<const D: usize>(
     Ok(())
 }
 
-/// Step `n` of the model's scheme.
+/// Takes step `n` of the model's scheme.
 fn one_step<const D: usize>(
     n: usize,
     state: &mut State<D>,
@@ -87,7 +87,7 @@ fn one_step<const D: usize>(
 }
 // ANCHOR_END: advance
 
-/// How many steps a time step has.
+/// Counts the steps that a time step of a method has.
 fn step_count(method: Method) -> usize {
     match method {
         Method::Otm => otm::STEPS,
@@ -99,7 +99,7 @@ fn step_count(method: Method) -> usize {
     }
 }
 
-/// When the loads of a time step are taken (s), which ends at `t`: Newmark and OTM balance
+/// Says when the loads of a time step are taken (s), which ends at `t`: Newmark and OTM balance
 /// the forces of k+1, the others those of k.
 pub fn time_of_loads(method: Method, dt: f64, t: f64) -> f64 {
     match method {

@@ -10,7 +10,7 @@ use crate::method::reading::StepEight;
 pub const STEPS: usize = 9;
 
 // ANCHOR: newmark
-/// Step `n` of the Algorithm, 1 to 9, in the time step from k to k+1 that ends at `t` (s).
+/// Takes step `n` of the Algorithm, 1 to 9, in the time step from k to k+1 that ends at `t` (s).
 ///
 /// With Δt = 0 and blank nodes the nine steps move nothing and give the nodal values of
 /// k = 0, which the first predictor needs.

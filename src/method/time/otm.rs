@@ -19,7 +19,8 @@ use nalgebra::SVector;
 pub const STEPS: usize = 7;
 
 // ANCHOR: otm_start
-/// k = 0: m_a = Σ_p m_p N_ap, once and for all, and v_a = Σ_p m_p v_p N_ap / m_a.
+/// Fills the nodes at k = 0: m_a = Σ_p m_p N_ap, once and for all, and v_a = Σ_p m_p v_p
+/// N_ap / m_a.
 ///
 /// Since the nodal mass stays, so does the momentum, to round-off.
 pub fn start<const D: usize>(state: &mut State<D>, model: &Model<D>) -> Result<(), Breakdown> {
@@ -69,21 +70,21 @@ pub fn step<const D: usize>(
 // ANCHOR_END: otm
 
 // ANCHOR: otm_steps
-/// Steps 1 and 7: v_a += ½ Δt f_a / m_a.
+/// Steps 1 and 7 kick the nodes: v_a += ½ Δt f_a / m_a.
 pub fn kick<const D: usize>(node: &mut Nodes<D>, dt: f64) {
     for a in 0..node.len() {
         node.v[a] += node.f[a] * (dt / node.m[a]);
     }
 }
 
-/// Step 2: x_a += Δt v_a.
+/// Step 2 moves the nodes: x_a += Δt v_a.
 pub fn move_nodes<const D: usize>(node: &mut Nodes<D>, dt: f64) {
     for a in 0..node.len() {
         node.x[a] += node.v[a] * dt;
     }
 }
 
-/// Step 3: x_p += Δt Σ_a v_a N_ap.
+/// Step 3 moves the particles: x_p += Δt Σ_a v_a N_ap.
 pub fn move_particles<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -95,8 +96,8 @@ pub fn move_particles<const D: usize>(
     }
 }
 
-/// Step 4: with G = Σ_a Δt v_a ⊗ ∇N_ap and f = 1 + G: F ← f F, ρ ← ρ / det f, and
-/// σ += D : Δε with Δε = sym(G (1 + G/2)⁻¹).
+/// Step 4 deforms them: with G = Σ_a Δt v_a ⊗ ∇N_ap and f = 1 + G it is F ← f F, ρ ← ρ /
+/// det f, and σ += D : Δε with Δε = sym(G (1 + G/2)⁻¹).
 ///
 /// Errors: [`Breakdown::Inverted`] when det f ≤ 0; [`Breakdown::NotFinite`].
 pub fn deform<const D: usize>(
@@ -122,7 +123,7 @@ pub fn deform<const D: usize>(
     Ok(())
 }
 
-/// v_p = Σ_a v_a N_ap, for what is recorded; nothing is computed from it.
+/// Shows v_p = Σ_a v_a N_ap for what is recorded; nothing is computed from it.
 pub fn show_velocity<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -134,7 +135,7 @@ pub fn show_velocity<const D: usize>(
 }
 // ANCHOR_END: otm_steps
 
-/// Step 5: N_ap and ∇N_ap on the nodes where they stand now.
+/// Step 5 tabulates N_ap and ∇N_ap on the nodes where they stand now.
 pub fn tabulate_again<const D: usize>(
     State { particle, node, shape, scratch, .. }: &mut State<D>,
     model: &Model<D>,

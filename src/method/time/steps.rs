@@ -16,8 +16,9 @@ use nalgebra::SVector;
 pub const NEWMARK_GAMMA: f64 = 0.5;
 
 // ANCHOR: predict
-/// Step 1, predictor: (27) x_p += Δt Σ_I p_I N_Ip / m_I + ½ Δt² Σ_I f_I N_Ip / m_I
-/// and (28) v_p += (1 − γ) Δt Σ_I f_I N_Ip / m_I, with nodal values of k.
+/// Step 1, the predictor, moves the particles with the nodal values of k:
+/// (27) x_p += Δt Σ_I p_I N_Ip / m_I + ½ Δt² Σ_I f_I N_Ip / m_I
+/// and (28) v_p += (1 − γ) Δt Σ_I f_I N_Ip / m_I.
 pub fn predict<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -34,7 +35,7 @@ pub fn predict<const D: usize>(
 // ANCHOR_END: predict
 
 // ANCHOR: discard
-/// Step 2: discard the previous nodal values.
+/// Step 2 discards the previous nodal values.
 pub fn discard<const D: usize>(node: &mut Nodes<D>) {
     node.m.fill(0.0);
     node.p.fill(SVector::zeros());
@@ -48,7 +49,7 @@ pub fn discard<const D: usize>(node: &mut Nodes<D>) {
 // ANCHOR_END: discard
 
 // ANCHOR: tabulate_step
-/// Between steps 2 and 3: N_Ip and ∇N_Ip at the particles' new positions.
+/// Between steps 2 and 3 N_Ip and ∇N_Ip are tabulated at the particles' new positions.
 ///
 /// Errors: [`Breakdown::LeftGrid`]; [`Breakdown::NotFinite`] for a position that
 /// is not a number; [`Breakdown::NoBasis`] where local max-ent has no solution.
@@ -64,8 +65,8 @@ pub fn tabulate<const D: usize>(
 // ANCHOR_END: tabulate_step
 
 // ANCHOR: transfer
-/// Step 3: m_I = Σ_p m_p N_Ip  (kg) and p_I = Σ_p m_p v_p N_Ip  (kg m/s); with
-/// the consistent mass matrix m_IJ, too.
+/// Step 3 carries mass and momentum to the nodes: m_I = Σ_p m_p N_Ip  (kg) and
+/// p_I = Σ_p m_p v_p N_Ip  (kg m/s); with the consistent mass matrix m_IJ, too.
 ///
 /// Errors: [`Breakdown::SingularMass`].
 pub fn transfer<const D: usize>(
@@ -81,8 +82,8 @@ pub fn transfer<const D: usize>(
 // ANCHOR_END: transfer
 
 // ANCHOR: impose_essential
-/// Step 4: p_I = 0 where the boundary is fixed, then v_I = p_I / m_I  (m/s), or the
-/// solution of (12) with the consistent mass matrix.
+/// Step 4 sets p_I = 0 where the boundary is fixed, then v_I = p_I / m_I  (m/s), or to
+/// the solution of (12) with the consistent mass matrix.
 pub fn impose_essential<const D: usize>(
     node: &mut Nodes<D>,
     mass: &mut MassMatrix<D>,
@@ -95,7 +96,7 @@ pub fn impose_essential<const D: usize>(
     update_velocity(node);
 }
 
-/// v_I from m_I v_I  (m/s); a node without mass keeps the velocity 0.
+/// Takes v_I from m_I v_I  (m/s); a node without mass keeps the velocity 0.
 pub fn update_velocity<const D: usize>(node: &mut Nodes<D>) {
     for I in 0..node.len() {
         if node.m[I] > 0.0 {
@@ -106,7 +107,8 @@ pub fn update_velocity<const D: usize>(node: &mut Nodes<D>) {
 // ANCHOR_END: impose_essential
 
 // ANCHOR: increment_strain
-/// Step 5: Δε_p = Δt ε̇_p, with (16) ε̇_p = ½ Σ_I (∇N_Ip v_I + (∇N_Ip v_I)ᵀ)  (–).
+/// Step 5 takes the strain increment from the nodes: Δε_p = Δt ε̇_p with (16) ε̇_p = ½ Σ_I
+/// (∇N_Ip v_I + (∇N_Ip v_I)ᵀ)  (–).
 pub fn increment_strain<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -121,7 +123,7 @@ pub fn increment_strain<const D: usize>(
 // ANCHOR_END: increment_strain
 
 // ANCHOR: update_density
-/// Step 6: ρ_p ← ρ_p / (1 + tr Δε_p)  (kg/m³).
+/// Step 6 updates the density, (17): ρ_p ← ρ_p / (1 + tr Δε_p)  (kg/m³).
 ///
 /// Errors: [`Breakdown::Inverted`] when 1 + tr Δε_p ≤ 0;
 /// [`Breakdown::NotFinite`] when it is not a number.
@@ -139,7 +141,7 @@ pub fn update_density<const D: usize>(particle: &mut Particles<D>) -> Result<(),
 // ANCHOR_END: update_density
 
 // ANCHOR: update_stress
-/// (3), between steps 6 and 7: σ_p += D : Δε_p  (Pa).
+/// (3) updates the stress, between steps 6 and 7: σ_p += D : Δε_p  (Pa).
 pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &LinearElastic) {
     for p in 0..particle.len() {
         particle.sigma[p] += law.stress_increment(&particle.d_eps[p]);
@@ -148,8 +150,8 @@ pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &LinearEl
 // ANCHOR_END: update_stress
 
 // ANCHOR: balance_forces
-/// Step 7: f_I = f_I^int + f_I^ext, (14) (15), with the loads of time `t` (s),
-/// and f_I = 0 where the boundary is fixed  (N); then m_I a_I, which is f_I, or the
+/// Step 7 balances the forces: f_I = f_I^int + f_I^ext, (14) (15), with the loads of time
+/// `t` (s), and f_I = 0 where the boundary is fixed  (N); then m_I a_I, which is f_I, or the
 /// solution of (12) with the consistent mass matrix.
 pub fn balance_forces<const D: usize>(
     node: &mut Nodes<D>,
@@ -171,7 +173,8 @@ pub fn balance_forces<const D: usize>(
 // ANCHOR_END: balance_forces
 
 // ANCHOR: integrate_momentum
-/// Step 8: p_I += γ f_I Δt, or f_I Δt as printed  (kg m/s); m_I v_I likewise.
+/// Step 8 integrates the momentum: p_I += γ f_I Δt, or f_I Δt as printed  (kg m/s);
+/// m_I v_I likewise.
 pub fn integrate_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64, reading: StepEight) {
     let share = match reading {
         StepEight::SecondOrder => NEWMARK_GAMMA,
@@ -185,7 +188,8 @@ pub fn integrate_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64, reading:
 // ANCHOR_END: integrate_momentum
 
 // ANCHOR: correct
-/// Step 9, corrector (29): v_p += γ Δt Σ_I f_I N_Ip / m_I, all at k+1  (m/s).
+/// Step 9, the corrector (29), adds the second half: v_p += γ Δt Σ_I f_I N_Ip / m_I, all at
+/// k+1  (m/s).
 pub fn correct<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -200,7 +204,7 @@ pub fn correct<const D: usize>(
 // ANCHOR_END: correct
 
 // ANCHOR: euler_steps
-/// Strain, density and stress of all particles from the nodal velocity: (16),
+/// Updates strain, density and stress of all particles from the nodal velocity: (16),
 /// (17), (3).
 ///
 /// Errors: [`Breakdown::Inverted`], [`Breakdown::NotFinite`].
@@ -217,7 +221,7 @@ pub fn update_material<const D: usize>(
     Ok(())
 }
 
-/// (18) over one step: p_I += f_I Δt  (kg m/s), m_I v_I likewise, and v_I  (m/s).
+/// (18) advances the momentum: p_I += f_I Δt  (kg m/s), m_I v_I likewise, and v_I  (m/s).
 pub fn advance_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64) {
     for I in 0..node.len() {
         node.p[I] += node.f[I] * dt;
@@ -226,7 +230,7 @@ pub fn advance_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64) {
     update_velocity(node);
 }
 
-/// (20) v_p += Δt Σ_I N_Ip a_I and (21) x_p += Δt Σ_I N_Ip v_I, with
+/// Moves the particles by (20) v_p += Δt Σ_I N_Ip a_I and (21) x_p += Δt Σ_I N_Ip v_I, with
 /// a_I = f_I/m_I and v_I = p_I/m_I of the advanced momentum.
 pub fn move_with_nodes<const D: usize>(
     particle: &mut Particles<D>,
@@ -240,7 +244,8 @@ pub fn move_with_nodes<const D: usize>(
     }
 }
 
-/// (23) v_p += Δt Σ_I N_Ip f_I / m_I and (22) x_p += Δt Σ_I N_Ip p_I / m_I.
+/// Moves the particles by (23) v_p += Δt Σ_I N_Ip f_I / m_I and (22) x_p += Δt Σ_I N_Ip p_I
+/// / m_I.
 pub fn move_with_shares<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -253,7 +258,8 @@ pub fn move_with_shares<const D: usize>(
     }
 }
 
-/// p_I = Σ_p m_p v_p N_Ip with the particles' new velocity and the old N_Ip.
+/// Maps the momentum again, p_I = Σ_p m_p v_p N_Ip, with the particles' new velocity and
+/// the old N_Ip.
 pub fn map_momentum_anew<const D: usize>(
     node: &mut Nodes<D>,
     particle: &Particles<D>,
@@ -264,8 +270,8 @@ pub fn map_momentum_anew<const D: usize>(
 }
 // ANCHOR_END: euler_steps
 
-/// a_I = Σ_p m_p a_p N_Ip / m_I (m/s²), or the solution of (12) with the consistent mass
-/// matrix; 0 where the boundary is fixed.
+/// Maps the acceleration, a_I = Σ_p m_p a_p N_Ip / m_I (m/s²), or the solution of (12) with
+/// the consistent mass matrix; 0 where the boundary is fixed.
 pub fn map_acceleration<const D: usize>(
     node: &mut Nodes<D>,
     mass: &mut MassMatrix<D>,

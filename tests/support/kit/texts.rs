@@ -5,7 +5,7 @@ use lme_mpm::method::basis::Basis;
 use lme_mpm::method::continuum::law::{LinearElastic, density};
 use lme_mpm::method::exact::Fields;
 use lme_mpm::method::measure::rms;
-use lme_mpm::port::trace::{self, Entry, Recorder, hex, number};
+use lme_mpm::port::trace::{self, Entry, TraceRecorder, hex, number};
 use lme_mpm::run::stability::predicted;
 use lme_mpm::run::table::shortest;
 use lme_mpm::scene::DYKA;
@@ -33,7 +33,7 @@ pub fn basis(sets: &[&str]) -> String {
     // uGIMP's particles must not reach beyond the grid.
     let places: Vec<_> = places.into_iter().filter(|x| tabulated(&[*x]).is_ok()).collect();
     let table = tabulated(&places).unwrap();
-    let mut kernel = Recorder::default();
+    let mut kernel = TraceRecorder::default();
     for (p, x) in places.iter().enumerate() {
         kernel.at(0, 0).components("x_p", p, x.as_slice());
     }
@@ -58,7 +58,7 @@ pub fn law_2d() -> String {
 
 /// Stress, density and energy of three materials after each of three strains.
 fn law<const D: usize>(strains: [SMatrix<f64, D, D>; 3]) -> String {
-    let mut kernel = Recorder::default();
+    let mut kernel = TraceRecorder::default();
     let mut k = 0;
     for (E, nu) in [(200e9, 0.0), (1000.0, 0.3), (7.0, -0.4)] {
         for d_eps in strains {
@@ -78,7 +78,7 @@ fn law<const D: usize>(strains: [SMatrix<f64, D, D>; 3]) -> String {
 
 /// The root mean square of three pairs of lists.
 pub fn measure() -> String {
-    let mut kernel = Recorder::default();
+    let mut kernel = TraceRecorder::default();
     let cases: [(&[f64], &[f64]); 3] = [
         (&[3.0, 1.0], &[0.0, 5.0]),
         (&[1.0, -1.0], &[0.0, 0.0]),
@@ -105,7 +105,7 @@ pub fn exact() -> String {
         }
     }
     let fields: Vec<Fields> = places.iter().map(|(x, t)| exact.at(*x, *t)).collect();
-    let mut kernel = Recorder::default();
+    let mut kernel = TraceRecorder::default();
     let mut column = |step: usize, symbol: &'static str, values: Vec<f64>| {
         for (n, value) in values.into_iter().enumerate() {
             kernel.at(0, step).components(symbol, n, &[value]);

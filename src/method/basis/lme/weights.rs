@@ -1,20 +1,38 @@
 //! The weights p_I at one multiplier, and their moments: (31), (32), (34), (36)
-//! and (37).
+//! and (37), where a plain exponential would lose digits or leave the range of numbers.
 
-use super::{Faces, Lme, fill_faces};
+use super::seen::{Seen, fill_faces};
 use crate::method::continuum::law::outer;
+use crate::method::cost::Cost;
 use nalgebra::{SMatrix, SVector};
 
 /// Up to this many cells the exponentials are factorised on a grid.
-pub const FEW: usize = 6;
+const FEW: usize = 6;
+
+/// The weights of the nodes that share, and what the next ones are made from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Weights {
+    /// p_I, which add up to 1.
+    pub p: Vec<f64>,
+    /// Σ exp f_I is Z exp(largest).
+    pub largest: f64,
+    pub Z: f64,
+    /// exp(−γk²) for k = 0, 1, … and the γ it is for.
+    gauss: [f64; FEW + 1],
+    gauss_gamma: f64,
+    /// Exponential functions and Newton iterations so far.
+    pub cost: Cost,
+}
 
 /// Z, r and J at one μ.
 pub struct Moments<const D: usize> {
+    /// μ = λ − 2γ ξ_0.
+    pub mu: SVector<f64, D>,
     /// The largest exponent, and Z with that taken off.
-    pub largest: f64,
-    pub Z: f64,
+    largest: f64,
+    Z: f64,
     /// μ·ξ_0.
-    pub tilt: f64,
+    tilt: f64,
     /// Σ p_I a_I.
     pub mean: SVector<f64, D>,
     /// (37): r = Σ p_I ξ_I.
@@ -30,89 +48,54 @@ impl<const D: usize> Moments<D> {
     }
 }
 
-impl<const D: usize> Lme<D> {
-    // ANCHOR: lme_moments
-    /// (31) (32) at μ, with the largest exponent taken off so that none
-    /// overflows; then r and J centred at the mean, so that nothing cancels.
-    pub fn moments(
-        &mut self,
-        gamma: f64,
-        mu: &SVector<f64, D>,
-        xi_0: &SVector<f64, D>,
-        faces: &Faces<D>,
-    ) -> Moments<D> {
-        let largest = match self.factorised(gamma, mu) {
-            true => 0.0,
-            false => self.exponentiated(gamma, mu),
-        };
-        let (mut Z, mut mean) = (0.0, SVector::zeros());
-        for (p, a) in self.weight.iter().zip(&self.a) {
-            Z += *p;
-            mean += a * *p;
-        }
-        mean /= Z;
-        let mut J = SMatrix::zeros();
-        for (p, a) in self.weight.iter_mut().zip(&self.a) {
-            *p /= Z;
-            let from_mean = a - mean;
-            J += outer(&from_mean, &from_mean) * *p;
-        }
-        fill_faces(&mut J, faces);
-        (self.largest, self.Z) = (largest, Z);
-        Moments { largest, Z, tilt: mu.dot(xi_0), mean, r: xi_0 + mean, J }
+// ANCHOR: lme_moments
+/// Takes (31) and (32) at μ, with the largest exponent taken off so that none
+/// overflows; then r and J centred at the mean, so that nothing cancels.
+pub fn moments<const D: usize>(
+    weights: &mut Weights,
+    seen: &Seen<D>,
+    gamma: f64,
+    mu: &SVector<f64, D>,
+) -> Moments<D> {
+    let largest = match factorised(weights, seen, gamma, mu) {
+        true => 0.0,
+        false => exponentiated(weights, seen, gamma, mu),
+    };
+    let (mut Z, mut mean) = (0.0, SVector::zeros());
+    for (p, a) in weights.p.iter().zip(&seen.a) {
+        Z += *p;
+        mean += a * *p;
     }
-    // ANCHOR_END: lme_moments
+    mean /= Z;
+    let mut J = SMatrix::zeros();
+    for (p, a) in weights.p.iter_mut().zip(&seen.a) {
+        *p /= Z;
+        let from_mean = a - mean;
+        J += outer(&from_mean, &from_mean) * *p;
+    }
+    fill_faces(&mut J, &seen.faces);
+    (weights.largest, weights.Z) = (largest, Z);
+    Moments { mu: *mu, largest, Z, tilt: mu.dot(&seen.xi_0), mean, r: seen.xi_0 + mean, J }
+}
+// ANCHOR_END: lme_moments
 
-    /// exp(f_I − the largest f) in `weight`; returns the largest f.
-    fn exponentiated(&mut self, gamma: f64, mu: &SVector<f64, D>) -> f64 {
-        let mut largest = f64::NEG_INFINITY;
-        for (p, a) in self.weight.iter_mut().zip(&self.a) {
-            *p = exponent(gamma, mu, a);
-            largest = largest.max(*p);
-        }
-        for p in &mut self.weight {
-            *p = libm::exp(*p - largest);
-        }
-        self.cost.exponentials += self.a.len() as u64;
-        largest
+/// Makes p_I = exp(f_I − the largest f); returns the largest f.
+fn exponentiated<const D: usize>(
+    weights: &mut Weights,
+    seen: &Seen<D>,
+    gamma: f64,
+    mu: &SVector<f64, D>,
+) -> f64 {
+    let mut largest = f64::NEG_INFINITY;
+    for (p, a) in weights.p.iter_mut().zip(&seen.a) {
+        *p = exponent(gamma, mu, a);
+        largest = largest.max(*p);
     }
-
-    // ANCHOR: lme_factorised
-    /// exp f_I in `weight` with one exponential for each axis, where all a_I are
-    /// small whole numbers: exp((μ − γa)a) = exp(−γa²) exp(μ)^a. Powers by
-    /// multiplication lose less than a digit of 1e-15 there. `false`, and
-    /// nothing done, elsewhere.
-    fn factorised(&mut self, gamma: f64, mu: &SVector<f64, D>) -> bool {
-        const MOST: f64 = 300.0;
-        let reach = self.reach;
-        let K = FEW as f64;
-        if !(self.on_grid && reach <= K && gamma * reach * reach < MOST && mu.amax() * reach < MOST)
-        {
-            return false;
-        }
-        if self.gauss_gamma != gamma {
-            self.gauss = std::array::from_fn(|k| libm::exp(-gamma * (k * k) as f64));
-            self.gauss_gamma = gamma;
-            self.cost.exponentials += self.gauss.len() as u64;
-        }
-        let mut factor = [[0.0; 2 * FEW + 1]; D];
-        for d in 0..D {
-            let (up, mut power) = (libm::exp(mu[d]), 1.0);
-            let (down, mut inverse) = (1.0 / up, 1.0);
-            for k in 0..=reach as usize {
-                factor[d][FEW + k] = self.gauss[k] * power;
-                factor[d][FEW - k] = self.gauss[k] * inverse;
-                power *= up;
-                inverse *= down;
-            }
-        }
-        self.cost.exponentials += D as u64;
-        for (p, a) in self.weight.iter_mut().zip(&self.a) {
-            *p = (0..D).map(|d| factor[d][(a[d] + K) as usize]).product();
-        }
-        true
+    for p in &mut weights.p {
+        *p = libm::exp(*p - largest);
     }
-    // ANCHOR_END: lme_factorised
+    weights.cost.exponentials += seen.a.len() as u64;
+    largest
 }
 
 /// f_I = −γ|a|² + μ·a, axis by axis: near the solution μ_d − γ a_d is the small
@@ -120,3 +103,43 @@ impl<const D: usize> Lme<D> {
 fn exponent<const D: usize>(gamma: f64, mu: &SVector<f64, D>, a: &SVector<f64, D>) -> f64 {
     (0..D).map(|d| (mu[d] - gamma * a[d]) * a[d]).sum()
 }
+
+// ANCHOR: lme_factorised
+/// Makes p_I = exp f_I with one exponential for each axis, where all a_I are small
+/// whole numbers: exp((μ − γa)a) = exp(−γa²) exp(μ)^a. Powers by multiplication lose
+/// less than a digit of 1e-15 there. Elsewhere nothing is done, and the answer is `false`.
+fn factorised<const D: usize>(
+    weights: &mut Weights,
+    seen: &Seen<D>,
+    gamma: f64,
+    mu: &SVector<f64, D>,
+) -> bool {
+    const MOST: f64 = 300.0;
+    let reach = seen.reach;
+    let K = FEW as f64;
+    if !(seen.on_grid && reach <= K && gamma * reach * reach < MOST && mu.amax() * reach < MOST) {
+        return false;
+    }
+    if weights.gauss_gamma != gamma {
+        weights.gauss = std::array::from_fn(|k| libm::exp(-gamma * (k * k) as f64));
+        weights.gauss_gamma = gamma;
+        weights.cost.exponentials += weights.gauss.len() as u64;
+    }
+    let mut factor = [[0.0; 2 * FEW + 1]; D];
+    for d in 0..D {
+        let (up, mut power) = (libm::exp(mu[d]), 1.0);
+        let (down, mut inverse) = (1.0 / up, 1.0);
+        for k in 0..=reach as usize {
+            factor[d][FEW + k] = weights.gauss[k] * power;
+            factor[d][FEW - k] = weights.gauss[k] * inverse;
+            power *= up;
+            inverse *= down;
+        }
+    }
+    weights.cost.exponentials += D as u64;
+    for (p, a) in weights.p.iter_mut().zip(&seen.a) {
+        *p = (0..D).map(|d| factor[d][(a[d] + K) as usize]).product();
+    }
+    true
+}
+// ANCHOR_END: lme_factorised

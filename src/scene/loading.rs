@@ -1,0 +1,53 @@
+//! Body force and tractions of a scene.
+
+use super::fault::SceneError;
+use super::parts::{BodyForceSpec, Side, TractionSpec};
+use super::values::Values;
+
+/// The table `body_force`.
+pub fn body_force(values: &Values) -> Result<Option<BodyForceSpec>, Box<SceneError>> {
+    if !values.has("body_force") {
+        return Ok(None);
+    }
+    let key = "body_force.acceleration";
+    let acceleration = values.axes(key)?;
+    unforced(values, key)?;
+    Ok(Some(BodyForceSpec { acceleration, ramp: values.number("body_force.ramp")? }))
+}
+
+/// The table `traction`.
+pub fn traction(
+    values: &Values,
+    boundary: &[[Side; 2]],
+) -> Result<Option<TractionSpec>, Box<SceneError>> {
+    if !values.has("traction") {
+        return Ok(None);
+    }
+    let given = values.sides("traction")?;
+    if given.is_empty() && values.has("traction.ramp") {
+        return Err(values.error("traction.ramp", "there is no side with a traction"));
+    }
+    let nothing = vec![0.0; values.dimension()];
+    let mut sides = vec![[nothing.clone(), nothing]; values.dimension()];
+    for side in given {
+        let t = values.axes(&side.path)?;
+        let fixed = &boundary[side.axis][side.upper].fixed;
+        if t.iter().zip(fixed).any(|(t, fixed)| *fixed && *t != 0.0) {
+            return Err(values.error(&side.path, "the side is fixed there"));
+        }
+        unforced(values, &side.path)?;
+        if !values.entries("body.ball").is_empty() {
+            return Err(values.error(&side.path, "a body of balls has no plane side to load"));
+        }
+        sides[side.axis][side.upper] = t;
+    }
+    Ok(Some(TractionSpec { sides, ramp: values.number("traction.ramp")? }))
+}
+
+/// Refuses a load beside the body force of a manufactured solution.
+fn unforced(values: &Values, key: &str) -> Result<(), Box<SceneError>> {
+    match values.has("manufactured") {
+        false => Ok(()),
+        true => Err(values.error(key, "the scene has `manufactured`, which brings its own load")),
+    }
+}

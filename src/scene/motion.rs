@@ -1,0 +1,114 @@
+//! How the body of a scene moves at the start.
+
+use super::fault::SceneError;
+use super::parts::{Body, GridSpec, Motion, Region, Side};
+use super::values::{Values, counted};
+use crate::method::choice::Method;
+use crate::method::exact::mode::Mode;
+use crate::method::quadrature::points;
+
+/// One of the tables `vibration`, `manufactured` and `initial_velocity`, or none.
+pub fn motion(
+    values: &Values,
+    method: Method,
+    body: &Body,
+    grid: &GridSpec,
+    boundary: &[[Side; 2]],
+) -> Result<Motion, Box<SceneError>> {
+    match only_one(values)? {
+        Some("vibration") => Ok(Motion::Vibration {
+            mode: mode(values, "vibration.mode", grid)?,
+            velocity: values.number("vibration.velocity")?,
+        }),
+        Some("manufactured") => {
+            let mode = mode(values, "manufactured.mode", grid)?;
+            let ends = [0, 1].map(|upper: usize| boundary[0][upper].end());
+            let k = Mode::new(ends, mode, body.length[0]).k;
+            let small = |amplitude: f64| (amplitude * k).abs() < 1.0;
+            let amplitude = values.number_if("manufactured.amplitude", small)?;
+            Ok(Motion::Manufactured { mode, amplitude })
+        }
+        _ => regions(values, method, body, grid).map(Motion::Regions),
+    }
+}
+
+/// The table that sets the motion.
+fn only_one(values: &Values) -> Result<Option<&'static str>, Box<SceneError>> {
+    let mut tables = vec!["vibration", "manufactured"];
+    tables.retain(|table| values.has(table));
+    if !values.entries("initial_velocity").is_empty() {
+        tables.push("initial_velocity");
+    }
+    if let [first, other, ..] = tables[..] {
+        let problem = format!("the scene has `{first}`, and only one of them can set the motion");
+        return Err(values.error(other, problem));
+    }
+    let table = tables.first().copied();
+    if let Some(mode) = table.filter(|name| *name != "initial_velocity" && values.dimension() > 1) {
+        let problem = format!("the scene has {}", counted(values.dimension(), "axis"));
+        return Err(values.error(mode, problem));
+    }
+    Ok(table)
+}
+
+/// The number of a mode. It needs two particles for each half wave, or it is another mode
+/// that starts.
+fn mode(values: &Values, key: &str, grid: &GridSpec) -> Result<usize, Box<SceneError>> {
+    let n = values.whole(key)?;
+    let places = grid.cells[0].saturating_mul(grid.particles_per_cell[0]);
+    if 2 * n > places {
+        return Err(values.error(key, format!("{places} particles cannot show mode {n}")));
+    }
+    Ok(n)
+}
+
+fn regions(
+    values: &Values,
+    method: Method,
+    body: &Body,
+    grid: &GridSpec,
+) -> Result<Vec<Region>, Box<SceneError>> {
+    let mut regions: Vec<Region> = Vec::new();
+    for entry in values.entries("initial_velocity") {
+        let region = region(values, &entry, body)?;
+        if let Some(other) = regions.iter().position(|other| overlap(&region, other)) {
+            let problem = format!("this region overlaps initial_velocity[{other}]");
+            return Err(values.error(&format!("{entry}.from"), problem));
+        }
+        if (0..values.dimension()).any(|d| is_empty(&region, d, method, body, grid)) {
+            return Err(values.error(&format!("{entry}.to"), "no particle lies in this region"));
+        }
+        regions.push(region);
+    }
+    Ok(regions)
+}
+
+fn region(values: &Values, entry: &str, body: &Body) -> Result<Region, Box<SceneError>> {
+    let upper = |d: usize| body.origin[d] + body.length[d];
+    let in_body = |d: usize, x: f64| body.origin[d] <= x && x < upper(d);
+    let from = values.axes_if(&format!("{entry}.from"), in_body)?;
+    let above = |d: usize, x: f64| from[d] < x && x <= upper(d);
+    let to = values.axes_if(&format!("{entry}.to"), above)?;
+    Ok(Region {
+        velocity: values.axes(&format!("{entry}.velocity"))?,
+        from: (0..values.dimension()).map(|d| from[d] - body.origin[d]).collect(),
+        to: (0..values.dimension())
+            // The body's own corner, to the last bit, where the region ends with it.
+            .map(|d| if to[d] == upper(d) { body.length[d] } else { to[d] - body.origin[d] })
+            .collect(),
+    })
+}
+
+fn overlap(one: &Region, other: &Region) -> bool {
+    (0..one.from.len()).all(|d| one.from[d] < other.to[d] && other.from[d] < one.to[d])
+}
+
+/// True where no particle of the cell at the region's lower corner, nor of the next,
+/// stands in it along axis `d`.
+fn is_empty(region: &Region, d: usize, method: Method, body: &Body, grid: &GridSpec) -> bool {
+    let h = body.length[d] / grid.cells[d] as f64;
+    let cell = libm::floor(region.from[d] / h);
+    let inside = |x: f64| region.from[d] <= x && x < region.to[d];
+    let points = points(method, grid.particles_per_cell[d]);
+    !points.iter().any(|[xi, _]| inside((cell + xi) * h) || inside((cell + 1.0 + xi) * h))
+}
