@@ -1,5 +1,6 @@
 //! The program as a user meets it: what every command prints and writes.
 
+use crate::support::dyka;
 use crate::support::program::*;
 use std::fs;
 
@@ -76,6 +77,19 @@ fn run_set_changes_the_scene() {
     let history = fs::read_to_string(dir.join("here/history.csv")).unwrap();
     assert_eq!(history.lines().count(), 1 + 17);
     assert!(history.contains(",tip,tip_exact,"));
+}
+
+/// `--set KEY=` takes a value out, or a whole table; one that is not there stays away, and
+/// what is set later counts.
+#[test]
+fn run_set_takes_values_out() {
+    assert_eq!(dyka(&["time.reading=as-printed", "time.reading="]), dyka(&[]));
+    assert_eq!(dyka(&["traction.ramp=", "body_force="]), dyka(&[]));
+    assert_eq!(dyka(&["boundary.left=", "boundary.left=fixed"]), dyka(&[]));
+    let free = dyka(&["boundary.left=free"]);
+    assert_ne!(free, dyka(&[]));
+    assert_eq!(dyka(&["boundary.left="]), free);
+    assert_eq!(dyka(&["boundary="]), free);
 }
 
 /// The free flight is free of stress, and keeps its velocity to the last bit.
@@ -235,17 +249,17 @@ fn studies_as_commands() {
     let list = text(&output.stdout);
     let first = list.lines().next().unwrap();
     assert!(
-        first.starts_with("lme-mpm trade --scene '") && first.contains(" --row otm/"),
+        first.starts_with("lme-mpm trade --scene '") && first.contains(" --row 'method=otm "),
         "{first}"
     );
     assert!(list.lines().count() > 100);
     let mut parts = Vec::new();
-    for (n, row) in
-        ["mpm/lumped/linear/newmark/0.25/2/0.5", "mpm/lumped/bspline/newmark/0.25/2/0.5"]
-            .into_iter()
-            .enumerate()
-    {
-        let output = program(&dir, &["trade", "--scene", vibration, "--row", row]);
+    for (n, basis) in ["linear", "bspline"].into_iter().enumerate() {
+        let row = format!(
+            "method=mpm mass=lumped basis.kind={basis} time.integrator=newmark grid.cells=8 \
+             grid.particles_per_cell=2 time.cfl=0.5"
+        );
+        let output = program(&dir, &["trade", "--scene", vibration, "--row", &row]);
         assert!(output.status.success(), "{}", text(&output.stderr));
         let name = format!("{n}.csv");
         fs::write(dir.join(&name), &output.stdout).unwrap();
@@ -258,8 +272,10 @@ fn studies_as_commands() {
     let expected = ["cheapest.csv", "displacement.svg", "stress.svg", "trade.csv", "velocity.svg"];
     assert_eq!(files(&dir.join("o")), expected);
     // Refused by name.
-    let output = program(&dir, &["trade", "--row", "mpm/lumped"]);
-    assert_fails(&output, 2, &["--row", "has 2 parts", "method/mass/basis"]);
+    let output = program(&dir, &["trade", "--row", "method=mpm lumped"]);
+    assert_fails(&output, 2, &["--row", "`lumped` is not KEY=VALUE", "as --list prints it"]);
+    let output = program(&dir, &["trade", "--row", "method=mpm"]);
+    assert_fails(&output, 2, &["basis.kind: this key is missing"]);
     let output = program(&dir, &["trade", "--merge", &parts[0], "--out", "p"]);
     assert_fails(&output, 2, &["log", "another scene"]);
     let output = program(&dir, &["recommend", vibration, "--error", "0"]);

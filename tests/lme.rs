@@ -419,6 +419,16 @@ fn lme_beside_a_triangle() {
     }
 }
 
+/// In a corner of its nodes' box, from which both sides of the hull run slanted, a point has
+/// no layer of nodes behind either face: refused, where slopes would be zero or no numbers.
+#[test]
+fn lme_in_a_pointed_corner_is_refused() {
+    let nodes = [[0.0, 0.0], [1.0, 0.5], [0.5, 1.0], [1.0, 1.0]].map(|[x, y]| Vector2::new(x, y));
+    let refused = lme_at(&nodes, 1.0, 1.8, 0.0, &nodes[0]).unwrap_err();
+    assert_eq!(refused, Failure::OutsideHull);
+    assert!(lme_at(&nodes, 1.0, 1.8, 0.0, &Vector2::new(0.1, 0.1)).is_ok());
+}
+
 /// Points on a side of nodes in no order, whose next layer does not stand opposite to
 /// them: Σ ∇N = 0, Σ ξ ⊗ ∇N = 1, and ∇N is the limit of the differences from inside.
 #[test]

@@ -145,6 +145,10 @@ fn bad_set() {
         ("probe.0=3", &["--set probe.0=3", "a table"]),
         ("time.end=1e10", &["--set time.end=1e10", "steps"]),
         ("probe.7.position=0", &["--set probe.7.position=0", "a number from 0 to 1"]),
+        ("grid.cells=", &["grid.cells: this key is missing", "from 1 up"]),
+        ("basis.gama=", &["--set basis.gama=", "did you mean `basis.gamma`?"]),
+        ("probe.component=", &["--set probe.component=", "`probe` is not a table here"]),
+        ("=", &["--set =", "not known"]),
     ];
     for (set, words) in cases {
         assert_fails(&program(&dir, &["run", DYKA, "--set", set, "--out", "out"]), 2, words);

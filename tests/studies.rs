@@ -1,16 +1,17 @@
 //! The studies: their configurations, their logs, and what they find on the bar.
 
 use crate::support::*;
+use lme_mpm::method::cost::Cost;
 use lme_mpm::output::figure;
 use lme_mpm::scene::DYKA;
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::study::configuration::{Configuration, Template};
-use lme_mpm::study::gamma;
-use lme_mpm::study::pool;
-use lme_mpm::study::trade::{
-    self, LEVELS, QUANTITIES, Run, Summary, cheapest, front, grid, read_log, runs, scene_digest,
-    summarise,
-};
+use lme_mpm::study::gamma::{self, AtGamma, Effect};
+use lme_mpm::study::log::{self, PASSES, TimedRun};
+use lme_mpm::study::measured::{Criterion, Measured};
+use lme_mpm::study::ranking::{self, LEVELS, Tried, WallTime, cheapest, front, summarise};
+use lme_mpm::study::trade::grid;
+use lme_mpm::study::{map, pool};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,66 +31,126 @@ fn directory(name: &str) -> PathBuf {
     dir
 }
 
-/// A configuration is its name, and the scene that it makes is what it says; keys of
-/// the template that mean nothing to it are gone.
+/// A configuration is written and read as one line, and makes the scene that `--set` makes
+/// of the same list, computed or written into a file.
 #[test]
 fn configurations_make_scenes() {
     let template = dyka_template();
-    for (text, expected) in [
-        (
-            "mpm/lumped/linear/newmark/2/3/0.25",
-            &["grid.cells=80", "grid.particles_per_cell=3", "time.cfl=0.25"][..],
-        ),
-        (
-            "mpm/consistent/lme-0.8-1e-3/forward-euler-last/1/2/0.5",
-            &[
-                "mass=consistent",
-                "basis={ kind = 'lme', gamma = 0.8, cutoff = 1e-3 }",
-                "time.integrator=forward-euler",
-                "time.stress_update=last",
-            ],
-        ),
-        (
-            "mpm/lumped/ugimp/generalized-alpha-0.8/0.5/2/0.5",
-            &[
-                "grid.cells=20",
-                "basis.kind=ugimp",
-                "time.integrator=generalized-alpha",
-                "time.rho_b=0.8",
-            ],
-        ),
-        (
-            "otm/lumped/lme-4/newmark/1/1/0.9",
-            &[
-                "method=otm",
-                "basis={kind='lme',gamma=4}",
-                "grid.particles_per_cell=1",
-                "time.cfl=0.9",
-            ],
-        ),
+    for line in [
+        "method=mpm mass=lumped basis.kind=linear time.integrator=newmark grid.cells=80 \
+         grid.particles_per_cell=3 time.cfl=0.25",
+        "method=mpm mass=consistent basis.kind=lme basis.gamma=0.8 basis.cutoff=1e-3 \
+         time.integrator=forward-euler time.stress_update=last grid.cells=40 \
+         grid.particles_per_cell=2 time.fraction_of_critical=0.5",
+        "method=mpm mass=lumped basis.kind=ugimp time.integrator=generalized-alpha \
+         time.rho_b=0.8 grid.cells=20 grid.particles_per_cell=2 \
+         grid.beyond={left=1,right=3} time.cfl=0.5",
+        "method=otm mass=lumped basis.kind=lme basis.gamma=4 time.integrator=newmark \
+         grid.cells=40 grid.particles_per_cell=1 time.cfl=0.9",
     ] {
-        let one = configuration(text);
-        assert_eq!(one.to_string(), text);
-        let mut expected = dyka(expected);
+        let one = configuration(line);
+        assert_eq!(one.to_string(), line);
+        let sets: Vec<&str> = line.split(' ').collect();
+        let none = DYKA.replace("cfl = 0.5\n", "");
+        let mut expected = scene(&none, &sets);
         expected.name = "scene".into();
-        assert_eq!(template.scene(&one).unwrap(), expected, "{text}");
+        assert_eq!(template.scene(&one).unwrap(), expected, "{line}");
+        let file = template.file(&one).unwrap();
+        let mut written = scene(&file, &[]);
+        written.name = "scene".into();
+        assert_eq!(written, expected, "{file}");
     }
-    // From a scene with another basis, integrator and room beyond the body.
+}
+
+/// What a configuration says nothing of is not left from the scene: keys of another basis,
+/// integrator, method or time step are gone.
+#[test]
+fn configurations_leave_nothing_of_the_scene() {
     let text = DYKA
         .replace("kind = \"linear\"", "kind = \"lme\"\ngamma = 2\ncutoff = 1e-4")
         .replace("integrator = \"newmark\"", "integrator = \"generalized-alpha\"\nrho_b = 0.5")
-        .replace("cells = 40", "cells = 40\nbeyond = { left = 2, right = 3 }");
+        .replace("cfl = 0.5", "cfl = 0.1\nfraction_of_critical = 0.1")
+        .replace("cells = 40", "cells = 40\nbeyond = { left = 0, right = 3 }");
     let template = Template::parse(Path::new("other.toml"), &text).unwrap();
-    let scene = template.scene(&configuration("mpm/lumped/linear/newmark/2/2/0.5")).unwrap();
-    assert_eq!(scene.grid.beyond, [[4, 6]]);
-    template.scene(&configuration("otm/lumped/lme-4/newmark/1/1/0.5")).unwrap();
-    for bad in
-        ["", "mpm/lumped", "mpm/lumped/linear/newmark/0/1/1", "mpm/lumped/linear/newmark/1/x/1"]
-    {
-        assert!(matches!(bad.parse::<Configuration>(), Err(Fault::Argument { .. })), "{bad}");
+    let parts = "basis.kind=linear time.integrator=newmark time.cfl=0.5";
+    let with = |method: &str, refinement: f64| {
+        let grid = template.grid(method, refinement, 2);
+        configuration(&format!("method={method} mass=lumped {parts} {grid}"))
+    };
+    let plain = dyka_template();
+    for method in ["mpm", "otm"] {
+        let scene = template.scene(&with(method, 2.0)).unwrap();
+        let grid = plain.grid(method, 2.0, 2);
+        let one = configuration(&format!("method={method} mass=lumped {parts} {grid}"));
+        let mut expected = plain.scene(&one).unwrap();
+        if method == "mpm" {
+            expected.grid.beyond = vec![[0, 6]];
+        }
+        assert_eq!(scene, expected);
     }
-    let bad = configuration("mpm/lumped/cubic/newmark/1/2/0.5");
-    assert!(matches!(template.scene(&bad), Err(Fault::Scene(_))));
+    // A coarser grid keeps a cell where there was one.
+    assert_eq!(template.scene(&with("mpm", 0.01)).unwrap().grid.beyond, [[0, 1]]);
+    assert_eq!(with("mpm", 0.01).value("grid.cells"), "1");
+    let flat = Template::parse(Path::new("discs.toml"), DISCS).unwrap();
+    let cells: Vec<String> = flat.scene.grid.cells.iter().map(|n| (2 * n).to_string()).collect();
+    let expected = format!("grid.cells=[{}] grid.particles_per_cell=[3,3]", cells.join(","));
+    assert_eq!(flat.grid("otm", 2.0, 3), expected);
+    // The digest of a study is that of what configurations do not change.
+    let digest = |text: String| Template::parse(Path::new("x"), &text).unwrap().digest().unwrap();
+    let own = digest(DYKA.to_string());
+    assert_eq!(digest(DYKA.replace("cfl = 0.5", "cfl = 0.4")), own);
+    assert_ne!(digest(DYKA.replace("cells = 40", "cells = 41")), own);
+    assert_ne!(digest(DYKA.replace("density = ", "density = 1")), own);
+}
+
+/// What is no configuration is refused by name; one that is complete but wrong, by the
+/// scene.
+#[test]
+fn configurations_are_checked() {
+    for (bad, words) in [
+        ("", "nothing is given"),
+        ("method", "`method` is not KEY=VALUE"),
+        ("method=mpm mass=", "`mass=` is not KEY=VALUE"),
+        ("method=mpm body.density=3", "`body.density` is not one of method, mass"),
+        ("method=mpm method=otm", "`method` stands there twice"),
+    ] {
+        let error = bad.parse::<Configuration>().unwrap_err().to_string();
+        assert!(error.contains(words) && error.contains("--list"), "{bad}: {error}");
+    }
+    let template = dyka_template();
+    let whole = "method=mpm mass=lumped basis.kind=cubic time.integrator=newmark \
+                 grid.cells=4 grid.particles_per_cell=1 time.cfl=0.5";
+    for (wrong, key, words) in [
+        (whole.to_string(), "basis.kind", "cubic"),
+        (whole.replace("cubic", "lme"), "basis.gamma", "needs this key"),
+        (whole.replace("cubic", "linear basis.gamma=1"), "basis.gamma", "means nothing"),
+        (whole.replace("mass=lumped ", ""), "mass", "missing"),
+        (whole.replace(" time.cfl=0.5", ""), "time.cfl", "missing"),
+    ] {
+        match template.scene(&configuration(&wrong)) {
+            Err(Fault::Scene(error)) => {
+                assert_eq!(error.key, key);
+                assert!(error.to_string().contains(words), "{error}");
+            }
+            other => panic!("{wrong}: {other:?}"),
+        }
+    }
+}
+
+/// The map has every combination once, and every one is a scene, but for the consistent
+/// matrix of one particle per cell, which may be singular.
+#[test]
+fn map_has_every_combination() {
+    let template = dyka_template();
+    let all = map::combinations(&template).unwrap();
+    // 6 bases × 6 integrators × 2 masses × 3 numbers × 2 offsets; OTM with 4 × 3.
+    assert_eq!(all.len(), 6 * 6 * 2 * 3 * 2 + 4 * 3);
+    for (n, one) in all.iter().enumerate() {
+        template.scene(&one.configuration).unwrap();
+        assert!(!all[..n].contains(one), "{one:?}");
+    }
+    let flat = Template::parse(Path::new("discs.toml"), DISCS).unwrap();
+    assert_eq!(map::combinations(&flat).unwrap().len(), 6 * 6 * 2 * 3 * 2 + 3 * 3);
 }
 
 /// The pool does every piece once, with any number of threads, and stops at the first
@@ -122,20 +183,41 @@ fn pool_does_everything_once() {
     assert_eq!(pool::run(&[] as &[u64], 3, |n| *n, |_, _| Ok::<(), ()>(())), Ok(()));
 }
 
+/// With any number of threads results come in the order of the items.
+#[test]
+fn pool_keeps_the_order() {
+    let items: Vec<u64> = (0..100).collect();
+    for jobs in [1, 3] {
+        let mut told = 0;
+        let squares = pool::all(&items, jobs, |n| n * n, &mut || told += 1);
+        assert_eq!(squares, items.iter().map(|n| n * n).collect::<Vec<_>>());
+        assert_eq!(told, 100);
+    }
+}
+
+/// Linear finite elements, two configurations that run, and one beyond its limit.
 fn small_grid() -> Vec<Configuration> {
     [
-        "otm/lumped/linear/newmark/0.25/1/0.99",
-        "mpm/lumped/linear/newmark/0.25/2/0.5",
-        "mpm/lumped/lme-0.8/newmark/0.25/2/0.5",
-        "mpm/lumped/ugimp/generalized-alpha-0.5/0.25/2/0.9", // beyond its limit
+        ("otm", "linear time.integrator=newmark", 1, 0.99),
+        ("mpm", "linear time.integrator=newmark", 2, 0.5),
+        ("mpm", "lme basis.gamma=0.8 time.integrator=newmark", 2, 0.5),
+        ("mpm", "ugimp time.integrator=generalized-alpha time.rho_b=0.5", 2, 0.9),
     ]
-    .map(configuration)
+    .map(|(method, parts, per_cell, cfl)| {
+        configuration(&format!(
+            "method={method} mass=lumped basis.kind={parts} grid.cells=10 \
+             grid.particles_per_cell={per_cell} time.cfl={cfl}"
+        ))
+    })
     .to_vec()
 }
 
-fn plain(runs: &[Run]) -> Vec<(String, usize, Result<Vec<f64>, String>)> {
-    let mut list: Vec<_> =
-        runs.iter().map(|run| (run.configuration.clone(), run.pass, run.result.clone())).collect();
+/// Runs without their times, in an order of their own.
+fn plain(runs: &[TimedRun]) -> Vec<(String, usize, Result<Measured, String>)> {
+    let mut list: Vec<_> = runs
+        .iter()
+        .map(|run| (run.configuration.to_string(), run.pass, run.measured.clone()))
+        .collect();
     list.sort_by(|a, b| (&a.0, a.1).cmp(&(&b.0, b.1)));
     list
 }
@@ -148,71 +230,78 @@ fn trade_goes_on_where_it_stopped() {
     let dir = directory("trade-log");
     let path = dir.join("runs.csv");
     let mut told = 0;
-    let whole = runs(&template, &grid, &path, 2, &mut |_, _| told += 1).unwrap();
-    assert_eq!((whole.len(), told), (grid.len() * trade::PASSES, grid.len() * trade::PASSES));
+    let whole = log::complete(&template, &grid, &path, 2, &mut |_, _| told += 1).unwrap();
+    assert_eq!((whole.len(), told), (grid.len() * PASSES, grid.len() * PASSES));
     let text = fs::read_to_string(&path).unwrap();
     for cut in [0, 9, text.len() / 3, text.len() / 2, text.len() - 5] {
         fs::write(&path, &text[..cut]).unwrap();
         let lines = text[..cut].lines().count();
         let mut told = 0;
-        let again = runs(&template, &grid, &path, 1, &mut |_, _| told += 1).unwrap();
+        let again = log::complete(&template, &grid, &path, 1, &mut |_, _| told += 1).unwrap();
         assert!(told <= whole.len() && told + lines >= whole.len());
         assert_eq!(plain(&again), plain(&whole));
-        let read = read_log(&path, &scene_digest(&template)).unwrap();
+        let read = log::read(&path, &template.digest().unwrap()).unwrap();
         assert_eq!(plain(&read), plain(&whole));
     }
     let rows = summarise(&whole);
     assert_eq!(rows.len(), 4);
-    assert!(rows.iter().all(|row| row.passes == trade::PASSES));
-    let failed: Vec<&Summary> = rows.iter().filter(|row| row.result.is_err()).collect();
+    assert!(rows.iter().all(|row| row.passes == PASSES));
+    let failed: Vec<&Tried> = rows.iter().filter(|row| row.measured.is_err()).collect();
     assert_eq!(failed.len(), 1);
-    assert!(failed[0].configuration.contains("generalized"));
-    let table = String::from_utf8(trade::table(&rows).unwrap()).unwrap();
+    assert_eq!(failed[0].configuration, grid[3]);
+    let table = String::from_utf8(ranking::table(&rows).unwrap()).unwrap();
     assert_eq!(table.lines().count(), 5);
     assert!(table.contains("blew up") || table.contains("used up"), "{table}");
+    assert!(table.contains("\nmpm,lumped,lme,0.8,,newmark,,,,10,2,,0.5,,"), "{table}");
     // Another scene's log is refused, and so is another file.
     let other = Template::parse(Path::new("v.toml"), VIBRATION).unwrap();
-    assert!(matches!(runs(&other, &grid, &path, 1, &mut |_, _| {}), Err(Fault::Argument { .. })));
+    let refused = |template: &Template| {
+        let outcome = log::complete(template, &grid, &path, 1, &mut |_, _| {});
+        assert!(matches!(outcome, Err(Fault::Argument { argument: "log", .. })), "{outcome:?}");
+    };
+    refused(&other);
     fs::write(&path, "x,y\n1,2\n").unwrap();
-    assert!(matches!(
-        runs(&template, &grid, &path, 1, &mut |_, _| {}),
-        Err(Fault::Argument { .. })
-    ));
+    refused(&template);
 }
 
-fn made_up(configuration: &str, time: f64, error: f64) -> Summary {
-    let result = if error.is_nan() { Err("blew up".into()) } else { Ok(vec![error; 12]) };
-    let configuration = configuration.to_string();
-    Summary { configuration, result, wall_time: [time; 3], passes: 3 }
+/// Every number is written and read back under its own name.
+#[test]
+fn measured_is_written_and_read() {
+    let cost = Cost { steps: 5, exponentials: 7, bytes_per_particle: 9, ..Cost::default() };
+    let measured =
+        Measured { velocity: 0.1, stress: 0.2, displacement: 0.3, energy_drift: 0.4, cost };
+    let named = measured.named();
+    let number = |name: &str| named.iter().find(|(own, _)| *own == name).map(|(_, x)| *x);
+    assert_eq!(Measured::read(number), Some(measured));
+    for (criterion, error) in Criterion::ALL.into_iter().zip([0.1, 0.2, 0.3]) {
+        assert_eq!((measured.error(criterion), number(criterion.name())), (error, Some(error)));
+    }
+    assert_eq!(number("energy_drift"), Some(0.4));
+    assert_eq!(number("exponentials"), Some(7.0));
+    assert_eq!(Measured::read(|name| number(name).filter(|_| name != "solves")), None);
 }
 
 /// The median of the passes, their least and largest.
 #[test]
 fn trade_takes_the_median() {
     let run = |pass, wall_time| {
-        let result = Ok(vec![0.1; 12]);
-        Run { configuration: "mpm/a".into(), pass, result, wall_time }
+        let (configuration, measured) = (configuration("method=mpm"), Ok(Measured::default()));
+        TimedRun { configuration, pass, measured, wall_time }
     };
     let rows = summarise(&[run(1, 5.0), run(2, 1.0), run(3, 2.0)]);
-    assert_eq!((rows.len(), rows[0].wall_time, rows[0].passes), (1, [2.0, 1.0, 5.0], 3));
+    assert_eq!((rows.len(), rows[0].passes), (1, 3));
+    assert_eq!(rows[0].wall_time, WallTime { median: 2.0, least: 1.0, largest: 5.0 });
 }
 
 /// With two probes of one quantity its error is the root of their mean square; with
 /// loads the balance of energy stands for its drift.
 #[test]
 fn trade_takes_all_probes_and_loads() {
-    let two = GRAVITY.replace(
-        "[[probe]]",
-        "[[probe]]\nname = \"displacement_middle\"\nquantity = \"displacement\"\nposition = 5\n\n[[probe]]",
-    );
-    let two = two.replacen(
-        "[[probe]]\nname = \"displacement_middle\"\nquantity = \"displacement\"\nposition = 5\n\n",
-        "",
-        1,
-    );
-    let template = Template::parse(Path::new("two.toml"), &two).unwrap();
-    let one = configuration("mpm/lumped/linear/newmark/1/2/0.5");
-    let list = trade::time(&template, &one, 1).result.unwrap();
+    let more = "[[probe]]\nname = 'displacement_middle'\nquantity = 'displacement'\nposition = 5\n";
+    let template = Template::parse(Path::new("two.toml"), &format!("{GRAVITY}\n{more}")).unwrap();
+    let parts = "method=mpm mass=lumped basis.kind=linear time.integrator=newmark time.cfl=0.5";
+    let one = configuration(&format!("{parts} {}", template.grid("mpm", 1.0, 2)));
+    let measured = TimedRun::of(&template, &one, 1).measured.unwrap();
     let scene = template.scene(&one).unwrap();
     assert_eq!(scene.probes.len(), 3);
     let outcome = finished(&scene);
@@ -220,34 +309,51 @@ fn trade_takes_all_probes_and_loads() {
     let (end, middle) =
         (of("displacement_end_rms_relative"), of("displacement_middle_rms_relative"));
     let mean = f64::sqrt(0.5 * (end * end + middle * middle));
-    assert!((list[2] / mean - 1.0).abs() < 1e-12 && end != middle);
-    assert!(list[3] > 0.0 && list[3] == of("energy_balance_largest"));
+    assert!((measured.displacement / mean - 1.0).abs() < 1e-12 && end != middle);
+    assert!(measured.energy_drift > 0.0);
+    assert_eq!(measured.energy_drift, of("energy_balance_largest"));
+    assert_eq!(measured.cost, outcome.cost);
 }
 
 /// The front holds those that nobody beats; the cheapest is the fastest below the
 /// level; finite elements are neither.
 #[test]
 fn trade_front_and_cheapest() {
-    let rows = [
-        made_up("mpm/a", 3.0, 0.1),
-        made_up("mpm/b", 1.0, 0.3),
-        made_up("mpm/c", 2.0, 0.35), // slower and worse than b
-        made_up("mpm/d", 9.0, 0.1),  // slower than a, no better
-        made_up("mpm/e", 10.0, 0.01),
-        made_up("mpm/f", 0.1, f64::NAN),
-        made_up("otm/lumped/linear/newmark/1/1/1", 0.01, 1e-6),
-    ];
-    let names = |list: Vec<&Summary>| {
-        list.iter().map(|row| row.configuration.as_str()).collect::<Vec<_>>().join(" ")
+    let made_up = |line: &str, time: f64, error: f64| Tried {
+        configuration: configuration(line),
+        measured: match error.is_nan() {
+            true => Err("blew up".into()),
+            false => Ok(Measured { velocity: error, ..Measured::default() }),
+        },
+        wall_time: WallTime { median: time, least: 0.0, largest: 99.0 },
+        passes: 3,
     };
-    assert_eq!(names(front(&rows, 0)), "mpm/b mpm/a mpm/e");
-    for (level, name) in [(0.4, "mpm/b"), (0.3, "mpm/b"), (0.2, "mpm/a"), (0.05, "mpm/e")] {
-        assert_eq!(cheapest(&rows, 0, level).unwrap().configuration, name);
+    let rows = [
+        made_up("time.cfl=1", 3.0, 0.1),
+        made_up("time.cfl=2", 1.0, 0.3),
+        made_up("time.cfl=3", 2.0, 0.35), // slower and worse than the second
+        made_up("time.cfl=4", 9.0, 0.1),  // slower than the first, no better
+        made_up("time.cfl=5", 10.0, 0.01),
+        made_up("time.cfl=6", 0.1, f64::NAN),
+        made_up("method=otm mass=lumped basis.kind=linear", 0.01, 1e-6),
+    ];
+    let judged = Criterion::Velocity;
+    let names =
+        front(&rows, judged).into_iter().map(|(row, _)| row.configuration.value("time.cfl"));
+    assert_eq!(names.collect::<Vec<_>>(), ["2", "1", "5"]);
+    for (level, n, error) in [(0.4, 1, 0.3), (0.3, 1, 0.3), (0.2, 0, 0.1), (0.05, 4, 0.01)] {
+        assert_eq!(cheapest(&rows, judged, level), Some((&rows[n], error)));
     }
-    assert_eq!(cheapest(&rows, 0, 1e-3), None);
-    let table = String::from_utf8(trade::cheapest_table(&rows).unwrap()).unwrap();
-    assert_eq!(table.lines().count(), 1 + LEVELS.len() * QUANTITIES.len());
+    assert_eq!(cheapest(&rows, judged, 1e-3), None);
+    assert_eq!(ranking::least_error(&rows, judged), 0.01);
+    let table = String::from_utf8(ranking::cheapest_table(&rows).unwrap()).unwrap();
+    assert_eq!(table.lines().count(), 1 + LEVELS.len() * Criterion::ALL.len());
     assert!(table.contains("velocity,0.001,none,,"), "{table}");
+    assert!(table.contains("velocity,0.05,time.cfl=5,0.01,10"), "{table}");
+    let families = ["linear, lumped", "otm", "finite elements"];
+    let lines = ["method=mpm mass=lumped basis.kind=linear", "method=otm basis.kind=lme"];
+    let own = lines.map(|line| configuration(line).family());
+    assert_eq!([&own[0], &own[1], &rows[6].configuration.family()], families);
 }
 
 /// The quick study on the grid of the scene itself: errors and counted cost, which are
@@ -257,44 +363,37 @@ fn trade_on_the_bar() {
     let template = dyka_template();
     let all = grid(&template, false).unwrap();
     assert!(all.len() > 100, "{}", all.len());
-    let own: Vec<Configuration> = all.into_iter().filter(|one| one.refinement == 1.0).collect();
-    let mut timed: Vec<Option<Run>> = vec![None; own.len()];
-    let work = |one: &Configuration| trade::time(&template, one, 1);
-    pool::run(&own, 2, work, |n, run| {
-        timed[n] = Some(run);
-        Ok::<(), ()>(())
-    })
-    .unwrap();
+    let mut own = all;
+    own.retain(|one| one.value("grid.cells") == "40");
+    let runs = pool::all(&own, 2, |one| TimedRun::of(&template, one, 1), &mut || {});
     let mut table = String::from(
         "configuration,velocity,stress,displacement,energy drift,pairs,exponentials,steps\n",
     );
-    let mut works = Vec::new();
-    for run in timed.into_iter().map(Option::unwrap) {
-        match &run.result {
-            Ok(list) => {
-                let (pairs, exponentials, steps) = (list[5], list[6], list[4]);
+    let mut efforts = Vec::new();
+    for TimedRun { configuration, measured, .. } in runs {
+        match measured {
+            Ok(Measured { velocity, stress, displacement, energy_drift, cost }) => {
+                let (pairs, exponentials) = (cost.particle_node_pairs, cost.exponentials);
                 writeln!(
                     table,
-                    "{},{:.4},{:.4},{:.5},{:.4},{pairs},{exponentials},{steps}",
-                    run.configuration, list[0], list[1], list[2], list[3]
+                    "{configuration},{velocity:.4},{stress:.4},{displacement:.5},{energy_drift:.4},{pairs},\
+                     {exponentials},{}",
+                    cost.steps
                 )
                 .unwrap();
-                let group = trade::family(&run.configuration);
-                works.push(figure::Work { work: pairs, error: Some(list[0]), group });
+                let (work, group) = (pairs as f64, configuration.family());
+                efforts.push(figure::Effort { work, error: Some(velocity), group });
             }
-            Err(problem) => writeln!(
-                table,
-                "{},{},,,,,,",
-                run.configuration,
-                problem.split_once("s: ").map_or(problem.as_str(), |(_, what)| what)
-            )
-            .unwrap(),
+            Err(problem) => {
+                let what = problem.split_once("s: ").map_or(problem.as_str(), |(_, what)| what);
+                writeln!(table, "{configuration},{what},,,,,,").unwrap();
+            }
         }
     }
     approve("trade__bar", &table);
     let title = "Velocity error against counted work, 40 cells";
     let x_label = "pairs of particle and node";
-    let svg = figure::work_precision(title, x_label, &works, &Vec::new());
+    let svg = figure::work_precision(title, x_label, &efforts, &Vec::new());
     approve_picture("trade__bar_figure", svg);
 }
 
@@ -303,60 +402,40 @@ fn trade_on_the_bar() {
 /// the right speed to a thousandth; lumped, they are late.
 #[test]
 fn gamma_from_end_to_end() {
-    let rows = gamma::rows(2, &mut || {}).unwrap();
-    let value = |way: &str, gamma: f64, name: &str| {
+    let rows = gamma::study(2, &mut || {}).unwrap();
+    let effect = |way: &str, gamma: f64| -> Effect {
         let row = rows.iter().find(|row| row.way == way && row.gamma == gamma).unwrap();
-        let column = gamma::COLUMNS.iter().position(|column| *column == name).unwrap();
-        row.values.as_ref().unwrap()[column]
+        *row.effect.as_ref().unwrap()
     };
     let linear = dyka(&[]);
     let error = crate::support::value(&linear, &finished(&linear), "velocity_end_rms_relative");
-    let end = value("mpm lumped", 50.0, "velocity");
+    let end = effect("mpm lumped", 50.0).velocity;
     assert!((end / error - 1.0).abs() < 1e-9, "{end} and {error}");
-    let best = gamma::GAMMAS
-        .into_iter()
-        .min_by(|a, b| {
-            let of = |gamma| value("mpm consistent", gamma, "velocity");
-            of(*a).total_cmp(&of(*b))
-        })
-        .unwrap();
-    assert_eq!(best, 0.8);
-    assert!(value("mpm consistent", 0.8, "dispersion").abs() < 1e-3);
-    assert!(value("mpm lumped", 0.8, "dispersion") < -0.1);
-    assert!((value("otm", 50.0, "critical_courant") - 1.0).abs() < 1e-3);
+    let of = |gamma| effect("mpm consistent", gamma).velocity;
+    let best = gamma::GAMMAS.into_iter().min_by(|a, b| of(*a).total_cmp(&of(*b)));
+    assert_eq!(best, Some(0.8));
+    assert!(effect("mpm consistent", 0.8).dispersion.abs() < 1e-3);
+    assert!(effect("mpm lumped", 0.8).dispersion < -0.1);
+    assert!((effect("otm", 50.0).critical_courant - 1.0).abs() < 1e-3);
     let mut table = String::from("way,γ");
-    for name in gamma::COLUMNS {
+    for (name, _) in Effect::default().named() {
         write!(table, ",{}", name.replace('_', " ")).unwrap();
     }
-    for row in &rows {
-        let list = row.values.as_ref().unwrap();
-        write!(table, "\n{},{}", row.way, row.gamma).unwrap();
-        for x in list {
-            write!(
-                table,
-                ",{}",
-                if x.abs() < 0.01 { format!("{x:.1e}") } else { format!("{x:.3}") }
-            )
-            .unwrap();
+    for AtGamma { way, gamma, effect } in &rows {
+        write!(table, "\n{way},{gamma}").unwrap();
+        for (_, x) in effect.as_ref().unwrap().named() {
+            let short = if x.abs() < 0.01 { format!("{x:.1e}") } else { format!("{x:.3}") };
+            write!(table, ",{short}").unwrap();
         }
     }
     approve("gamma__study", &(table + "\n"));
-    let curves = |column: usize| -> Vec<(String, figure::Points)> {
-        gamma::WAYS
-            .iter()
-            .map(|way| {
-                let own = rows.iter().filter(|row| row.way == way.0);
-                let point =
-                    |row: &gamma::Row| (row.gamma, row.values.as_ref().unwrap()[column].abs());
-                (way.0.to_string(), own.map(point).collect())
-            })
-            .collect()
-    };
+    let curves = |name| gamma::curves(&rows, name);
     let title = "Velocity error of the bar against γ, 40 cells";
-    let svg = figure::log_curves(title, "γ [–]", "relative error [–]", &curves(0));
+    let svg = figure::log_curves(title, "γ [–]", "relative error [–]", &curves("velocity"));
     approve_picture("gamma__velocity", svg);
     let title = "Frequency error of a wave of eight cells";
-    let svg = figure::log_curves(title, "γ [–]", "relative error, size [–]", &curves(5));
+    let y_label = "relative error, size [–]";
+    let svg = figure::log_curves(title, "γ [–]", y_label, &curves("dispersion"));
     approve_picture("gamma__dispersion", svg);
 }
 

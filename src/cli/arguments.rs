@@ -1,9 +1,10 @@
 //! What the command line understands.
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use lme_mpm::scene::SHIPPED;
+use lme_mpm::study::measured::Criterion;
 use std::path::PathBuf;
 
 /// The Material Point Method with local maximum-entropy shape functions.
@@ -35,7 +36,7 @@ pub enum Command {
         /// Where to write; out/<scene name> without it
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Replace or add a value of the scene; may be given again
+        /// Replace or add a value of the scene, or take it out with KEY=; may be given again
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
         /// No progress bar and no summary
@@ -88,7 +89,7 @@ pub enum Command {
         /// How many time steps, at most those of the scene
         #[arg(long, value_name = "K", default_value_t = 1)]
         steps: usize,
-        /// Replace or add a value of the scene; may be given again
+        /// Replace or add a value of the scene, or take it out with KEY=; may be given again
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
         /// Numbers in hexadecimal, as C prints them with %a
@@ -146,8 +147,8 @@ pub enum Command {
         #[arg(long, value_parser = percent)]
         error: f64,
         /// Which error
-        #[arg(long, default_value = "velocity")]
-        quantity: QuantityName,
+        #[arg(long, default_value = "velocity", value_parser = criterion())]
+        quantity: Criterion,
         /// Where to write; out/recommend/<scene name> without it
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
@@ -228,13 +229,6 @@ pub struct TradeArguments {
     pub merge: Vec<PathBuf>,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub enum QuantityName {
-    Velocity,
-    Stress,
-    Displacement,
-}
-
 #[derive(Args)]
 pub struct ShapeArguments {
     #[arg(long)]
@@ -265,6 +259,14 @@ pub enum BasisName {
     Ugimp,
     Lme,
     Bspline,
+}
+
+/// The name of the quantity whose error is asked for.
+fn criterion() -> impl TypedValueParser<Value = Criterion> {
+    PossibleValuesParser::new(Criterion::ALL.map(Criterion::name)).try_map(|name| {
+        let mut known = Criterion::ALL.into_iter();
+        known.find(|one| one.name() == name).ok_or("it is not known")
+    })
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -33,38 +33,35 @@ pub struct Cost {
 
 impl Cost {
     /// Every counter with its name, in the order of `cost.csv`.
-    pub fn named(&self) -> [(&'static str, u64); 11] {
+    pub fn named(mut self) -> [(&'static str, u64); 11] {
+        self.places().map(|(name, count)| (name, *count))
+    }
+
+    /// Every counter with its name, to be set.
+    pub fn places(&mut self) -> [(&'static str, &mut u64); 11] {
         [
-            ("steps", self.steps),
-            ("basis_evaluations", self.basis_evaluations),
-            ("particle_node_pairs", self.particle_node_pairs),
-            ("exponentials", self.exponentials),
-            ("newton_iterations", self.newton_iterations),
-            ("body_forces", self.body_forces),
-            ("tractions", self.tractions),
-            ("factorizations", self.factorizations),
-            ("solves", self.solves),
-            ("candidates", self.candidates),
-            ("bytes_per_particle", self.bytes_per_particle),
+            ("steps", &mut self.steps),
+            ("basis_evaluations", &mut self.basis_evaluations),
+            ("particle_node_pairs", &mut self.particle_node_pairs),
+            ("exponentials", &mut self.exponentials),
+            ("newton_iterations", &mut self.newton_iterations),
+            ("body_forces", &mut self.body_forces),
+            ("tractions", &mut self.tractions),
+            ("factorizations", &mut self.factorizations),
+            ("solves", &mut self.solves),
+            ("candidates", &mut self.candidates),
+            ("bytes_per_particle", &mut self.bytes_per_particle),
         ]
     }
 }
 
 impl std::ops::Add for Cost {
     type Output = Cost;
-    fn add(self, other: Cost) -> Cost {
-        Cost {
-            steps: self.steps + other.steps,
-            basis_evaluations: self.basis_evaluations + other.basis_evaluations,
-            particle_node_pairs: self.particle_node_pairs + other.particle_node_pairs,
-            exponentials: self.exponentials + other.exponentials,
-            newton_iterations: self.newton_iterations + other.newton_iterations,
-            body_forces: self.body_forces + other.body_forces,
-            tractions: self.tractions + other.tractions,
-            factorizations: self.factorizations + other.factorizations,
-            solves: self.solves + other.solves,
-            candidates: self.candidates + other.candidates,
-            bytes_per_particle: self.bytes_per_particle + other.bytes_per_particle,
+
+    fn add(mut self, other: Cost) -> Cost {
+        for ((_, count), (_, more)) in self.places().into_iter().zip(other.named()) {
+            *count += more;
         }
+        self
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures as SVG: histories of probes, fronts of the exact solution, errors.
+//! Pictures are drawn as SVG: histories of probes, fronts of the exact solution, errors.
 
 use crate::method::basis::lme::Failure;
 use crate::method::basis::scattered::values_at;
@@ -9,37 +9,64 @@ use kuva::prelude::*;
 use nalgebra::Vector2;
 use std::sync::Arc;
 
-/// Width and height of a picture (px).
+/// A picture has this width and height (px).
 const SIZE: (f64, f64) = (860.0, 420.0);
 
-/// Colour-blind safe (Okabe & Ito 2008); the exact curve stands behind.
+/// The exact curve stands behind in grey; the colours are safe for the colour-blind (Okabe &
+/// Ito 2008).
 const EXACT: &str = "#999999";
 const COLOURS: [&str; 10] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000", "#882255",
     "#999933", "#44aa99",
 ];
 
-/// A curve's points.
-pub type Points = Vec<(f64, f64)>;
+/// A curve has these points, from one end to the other.
+pub type CurvePoints = Vec<(f64, f64)>;
 
-/// One line of a picture.
+/// A curve is one line of a picture.
 struct Curve {
-    points: Points,
+    points: CurvePoints,
     colour: &'static str,
     width: f64,
     /// Empty: not in the legend.
     legend: String,
 }
 
-/// What stands around the curves.
-struct Frame {
+/// The axes and the title stand around the curves.
+struct Axes {
     title: String,
     x_label: String,
     y_label: String,
     log: bool,
 }
 
-fn draw(curves: Vec<Curve>, frame: Frame) -> String {
+impl Axes {
+    fn new(
+        title: impl Into<String>,
+        x_label: impl Into<String>,
+        y_label: impl Into<String>,
+        log: bool,
+    ) -> Self {
+        Axes { title: title.into(), x_label: x_label.into(), y_label: y_label.into(), log }
+    }
+}
+
+/// Gives the layout that all pictures share: a size (px), axes, ticks that read well.
+fn layout(plots: &[Plot], size: (f64, f64), axes: &Axes) -> Layout {
+    let layout = Layout::auto_from_plots(plots)
+        .with_width(size.0)
+        .with_height(size.1)
+        .with_title(&axes.title)
+        .with_title_size(16)
+        .with_x_label(&axes.x_label)
+        .with_y_label(&axes.y_label)
+        .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
+        .with_legend_position(LegendPosition::OutsideRightTop);
+    if axes.log { layout.with_log_scale() } else { layout }
+}
+
+fn draw(curves: Vec<Curve>, axes: &Axes) -> String {
     let xs = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.0);
     let (first, last) = (xs().fold(0.0, f64::min), xs().fold(0.0, f64::max));
     let plots: Vec<Plot> = curves
@@ -52,27 +79,13 @@ fn draw(curves: Vec<Curve>, frame: Frame) -> String {
             Plot::from(if curve.legend.is_empty() { line } else { line.with_legend(curve.legend) })
         })
         .collect();
-    let layout = Layout::auto_from_plots(&plots)
-        .with_width(SIZE.0)
-        .with_height(SIZE.1)
-        .with_title(frame.title)
-        .with_x_label(frame.x_label)
-        .with_y_label(frame.y_label)
-        .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
-        .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
-        .with_title_size(16)
-        .with_label_size(14)
-        .with_tick_size(12)
-        .with_legend_position(LegendPosition::OutsideRightTop);
-    let layout = if frame.log {
-        layout.with_log_scale()
-    } else {
-        layout.with_x_axis_min(first).with_x_axis_max(last)
-    };
+    let layout = layout(&plots, SIZE, axes);
+    let layout =
+        if axes.log { layout } else { layout.with_x_axis_min(first).with_x_axis_max(last) };
     own_ids(&render_to_svg(plots, layout))
 }
 
-/// The history of one probe, computed and, where known, exact.
+/// Draws the history of one probe, computed and, where known, exact.
 pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
     let column = |name: &str| history.column(name).unwrap_or_default();
     let (t, computed) = (column("t"), column(&probe.name));
@@ -95,16 +108,16 @@ pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
     let at: Vec<String> =
         probe.position.iter().zip(&scene.body.origin).map(|(x, o)| format!("{}", x + o)).collect();
     let cells: Vec<String> = scene.grid.cells.iter().map(usize::to_string).collect();
-    let frame = Frame {
-        title: format!("{}: {}, {} cells", scene.title, probe.name, cells.join(" × ")),
-        x_label: format!("time t [{t_prefix}s]"),
-        y_label: format!("{name} nearest to {} m [{y_prefix}{unit}]", at.join(", ")),
-        log: false,
-    };
-    draw(curves, frame)
+    let axes = Axes::new(
+        format!("{}: {}, {} cells", scene.title, probe.name, cells.join(" × ")),
+        format!("time t [{t_prefix}s]"),
+        format!("{name} nearest to {} m [{y_prefix}{unit}]", at.join(", ")),
+        false,
+    );
+    draw(curves, &axes)
 }
 
-/// A quantity of the exact bar at the material point x over `transits` L/c:
+/// Draws a quantity of the exact bar at the material point x over `transits` L/c:
 /// the paper's Figs. 5 and 6. `value` gives the quantity at (x, t).
 pub fn exact_history(
     title: &str,
@@ -120,16 +133,11 @@ pub fn exact_history(
         points.push((k as f64 / 4.0, y));
         points.push(((k + 1) as f64 / 4.0, y));
     }
-    let frame = Frame {
-        title: title.to_string(),
-        x_label: "time ct/L [–]".to_string(),
-        y_label: y_label.to_string(),
-        log: false,
-    };
-    draw(vec![Curve { points, colour: COLOURS[0], width: 2.0, legend: String::new() }], frame)
+    let axes = Axes::new(title, "time ct/L [–]", y_label, false);
+    draw(vec![Curve { points, colour: COLOURS[0], width: 2.0, legend: String::new() }], &axes)
 }
 
-/// The x-t diagram of a bar: every front from its source, from end to end, for
+/// Draws the x-t diagram of a bar: every front from its source, from end to end, for
 /// `transits` L/c, coloured by the invariant that carries it.
 pub fn fronts(bar: &Bar, transits: f64) -> String {
     let mut curves: Vec<Curve> = Vec::new();
@@ -155,30 +163,35 @@ pub fn fronts(bar: &Bar, transits: f64) -> String {
             }
         }
     }
-    let frame = Frame {
-        title: "Fronts of the bar".to_string(),
-        x_label: "place x/L [–]".to_string(),
-        y_label: "time ct/L [–]".to_string(),
-        log: false,
-    };
-    draw(curves, frame)
+    let axes = Axes::new("Fronts of the bar", "place x/L [–]", "time ct/L [–]", false);
+    draw(curves, &axes)
 }
 
-/// Errors against the number of cells, both on logarithmic axes; each list of
+/// Draws errors against the number of cells, both on logarithmic axes; each list of
 /// `(cells, error)` has its name.
-pub fn convergence(title: &str, lists: &[(&str, Points)]) -> String {
-    let owned: Vec<(String, Points)> =
+pub fn convergence(title: &str, lists: &[(&str, CurvePoints)]) -> String {
+    let owned: Vec<(String, CurvePoints)> =
         lists.iter().map(|(name, points)| (name.to_string(), points.clone())).collect();
     log_curves(title, "cells [–]", "relative error [–]", &owned)
 }
 
-/// Curves with names, both axes logarithmic.
-pub fn log_curves(title: &str, x_label: &str, y_label: &str, lists: &[(String, Points)]) -> String {
+/// Draws curves with names, both axes logarithmic.
+pub fn log_curves(
+    title: &str,
+    x_label: &str,
+    y_label: &str,
+    lists: &[(String, CurvePoints)],
+) -> String {
     named_curves(title, x_label, y_label, lists, true)
 }
 
-/// Curves with names on plain axes.
-pub fn curves(title: &str, x_label: &str, y_label: &str, lists: &[(String, Points)]) -> String {
+/// Draws curves with names on plain axes.
+pub fn curves(
+    title: &str,
+    x_label: &str,
+    y_label: &str,
+    lists: &[(String, CurvePoints)],
+) -> String {
     named_curves(title, x_label, y_label, lists, false)
 }
 
@@ -186,124 +199,105 @@ fn named_curves(
     title: &str,
     x_label: &str,
     y_label: &str,
-    lists: &[(String, Points)],
+    lists: &[(String, CurvePoints)],
     log: bool,
 ) -> String {
-    let curve = |(n, (name, points)): (usize, &(String, Points))| Curve {
+    let curve = |(n, (name, points)): (usize, &(String, CurvePoints))| Curve {
         points: points.clone(),
         colour: COLOURS[n % COLOURS.len()],
         width: 2.0,
         legend: name.clone(),
     };
-    let frame = Frame {
-        title: title.to_string(),
-        x_label: x_label.to_string(),
-        y_label: y_label.to_string(),
-        log,
-    };
-    draw(lists.iter().enumerate().map(curve).collect(), frame)
+    let axes = Axes::new(title, x_label, y_label, log);
+    draw(lists.iter().enumerate().map(curve).collect(), &axes)
 }
 
-/// A point of a work-precision diagram: what it took, its relative error, and the
-/// group that gives its colour; no error for a run that failed.
-pub struct Work {
+/// An effort is a point of a work-precision diagram: what it took, its relative error, and
+/// the group that gives its colour; no error for a run that failed.
+pub struct Effort {
     pub work: f64,
     pub error: Option<f64>,
     pub group: String,
 }
 
-/// Error against work, both logarithmic: one colour for each group, the Pareto front
+/// Draws error against work, both logarithmic: one colour for each group, the Pareto front
 /// as a line, failed runs as crosses above all others.
-pub fn work_precision(title: &str, x_label: &str, works: &[Work], front: &Points) -> String {
-    let worst = works.iter().filter_map(|work| work.error).fold(0.0, f64::max);
-    let mut groups: Vec<&str> = Vec::new();
-    for work in works {
-        if !groups.contains(&work.group.as_str()) {
-            groups.push(&work.group);
-        }
-    }
+pub fn work_precision(
+    title: &str,
+    x_label: &str,
+    efforts: &[Effort],
+    front: &CurvePoints,
+) -> String {
     let mut plots: Vec<Plot> = Vec::new();
     if front.len() > 1 {
         let line = LinePlot::new().with_data(front.clone()).with_color("#000000");
         plots.push(Plot::from(line.with_stroke_width(1.5).with_legend("nobody is better")));
     }
-    for (n, group) in groups.iter().enumerate() {
-        let own = works.iter().filter(|work| work.group == *group);
-        let points: Points =
-            own.filter_map(|work| work.error.map(|error| (work.work, error))).collect();
+    let scatter = |points: CurvePoints, colour| {
+        ScatterPlot::new()
+            .with_data::<f64, f64, CurvePoints>(points)
+            .with_size(3.5)
+            .with_color(colour)
+    };
+    for (n, (name, points)) in groups(efforts).into_iter().enumerate() {
         if !points.is_empty() {
-            let scatter = ScatterPlot::new().with_data(points).with_size(3.5);
-            let scatter = scatter.with_color(COLOURS[n % COLOURS.len()]);
-            plots.push(scatter.with_legend(*group).into());
+            plots.push(scatter(points, COLOURS[n % COLOURS.len()]).with_legend(name).into());
         }
     }
-    let failed: Points =
-        works.iter().filter(|work| work.error.is_none()).map(|w| (w.work, 2.0 * worst)).collect();
+    let worst = efforts.iter().filter_map(|effort| effort.error).fold(0.0, f64::max);
+    let failed = efforts.iter().filter(|effort| effort.error.is_none());
+    let failed: CurvePoints = failed.map(|effort| (effort.work, 2.0 * worst)).collect();
     if !failed.is_empty() && worst > 0.0 {
-        let scatter = ScatterPlot::new().with_data(failed).with_size(3.5).with_color("#d00000");
-        plots.push(scatter.with_marker(MarkerShape::Cross).with_legend("failed").into());
+        let crosses = scatter(failed, "#d00000").with_marker(MarkerShape::Cross);
+        plots.push(crosses.with_legend("failed").into());
     }
-    let layout = Layout::auto_from_plots(&plots)
-        .with_width(SIZE.0)
-        .with_height(SIZE.1)
-        .with_title(title)
-        .with_x_label(x_label)
-        .with_y_label("relative error [–]")
-        .with_log_scale()
-        .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
-        .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
-        .with_title_size(16)
-        .with_label_size(14)
-        .with_tick_size(12)
-        .with_legend_position(LegendPosition::OutsideRightTop);
+    let axes = Axes::new(title, x_label, "relative error [–]", true);
+    let layout = layout(&plots, SIZE, &axes);
     own_ids(&render_to_svg(plots, layout))
 }
 
-/// The paper's Fig. 3: local max-ent in 2D for several γ. Above N of the middle
+/// Lists the groups in order of first appearance, each with the points of its runs that did
+/// not fail.
+fn groups(efforts: &[Effort]) -> Vec<(&str, CurvePoints)> {
+    let mut groups: Vec<(&str, CurvePoints)> = Vec::new();
+    for effort in efforts {
+        let known = groups.iter().position(|(name, _)| *name == effort.group);
+        let n = known.unwrap_or_else(|| {
+            groups.push((&effort.group, Vec::new()));
+            groups.len() - 1
+        });
+        groups[n].1.extend(effort.error.map(|error| (effort.work, error)));
+    }
+    groups
+}
+
+/// Each map of [`local_max_ent`] has as many points to a side, and this half of a width in
+/// cells.
+const PIXELS: usize = 25;
+const HALF_WIDTH: f64 = 2.5;
+
+/// Draws the paper's Fig. 3: local max-ent in 2D for several γ. Above N of the middle
 /// node, below ∂N/∂x, over a square of nodes with the spacing 1.
 ///
 /// Errors: [`Failure`], if a point cannot be served.
 pub fn local_max_ent(gammas: &[f64]) -> Result<String, Failure> {
-    const NODES: i32 = 3; // to each side of the middle
-    const PIXELS: usize = 25;
-    let mut nodes = Vec::new();
-    for j in -NODES..=NODES {
-        for i in -NODES..=NODES {
-            nodes.push(Vector2::new(f64::from(i), f64::from(j)));
-        }
-    }
-    let middle = nodes.len() / 2;
     let (mut plots, mut layouts) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
     for gamma in gammas {
-        let mut values = [Vec::new(), Vec::new()];
-        for row in 0..PIXELS {
-            let mut line = [Vec::new(), Vec::new()];
-            for column in 0..PIXELS {
-                let at = |n: usize| 2.5 * (2.0 * n as f64 / (PIXELS - 1) as f64 - 1.0);
-                let x = Vector2::new(at(column), -at(row));
-                let (found, _) = values_at(&nodes, 1.0, *gamma, 1e-6, &x)?;
-                let here = found.iter().find(|value| value.0 == middle);
-                line[0].push(here.map_or(0.0, |value| value.1));
-                line[1].push(here.map_or(0.0, |value| value.2[0]));
-            }
-            for (values, line) in values.iter_mut().zip(line) {
-                values.push(line);
-            }
-        }
-        for (n, (values, name)) in values.into_iter().zip(["N", "h ∂N/∂x"]).enumerate() {
-            let map = if n == 0 { ColorMap::Viridis } else { ColorMap::Inferno };
+        let maps = [("N", ColorMap::Viridis), ("h ∂N/∂x", ColorMap::Inferno)];
+        for (n, (values, (name, map))) in middle_function(*gamma)?.into_iter().zip(maps).enumerate()
+        {
             let heatmap = Heatmap::new()
                 .with_data(values)
                 .with_color_map(map)
                 .with_cell_size(1.0)
-                .with_x_range(-2.5, 2.5)
-                .with_y_range(-2.5, 2.5);
+                .with_x_range(-HALF_WIDTH, HALF_WIDTH)
+                .with_y_range(-HALF_WIDTH, HALF_WIDTH);
             let plot = Plot::from(heatmap);
             let layout = Layout::auto_from_plots(std::slice::from_ref(&plot))
-                .with_x_axis_min(-2.5)
-                .with_x_axis_max(2.5)
-                .with_y_axis_min(-2.5)
-                .with_y_axis_max(2.5)
+                .with_x_axis_min(-HALF_WIDTH)
+                .with_x_axis_max(HALF_WIDTH)
+                .with_y_axis_min(-HALF_WIDTH)
+                .with_y_axis_max(HALF_WIDTH)
                 .with_title(format!("{name}, γ = {gamma}"))
                 .with_title_size(14);
             plots[n].push(vec![plot]);
@@ -317,59 +311,86 @@ pub fn local_max_ent(gammas: &[f64]) -> Result<String, Failure> {
     Ok(own_ids(&kuva::backend::svg::SvgBackend.render_scene(&figure.render())))
 }
 
-/// The particles of a 2D scene, or of a 3D one seen along z, in six classes of
-/// speed.
-pub fn particles(scene: &Scene, table: &Table, t: f64) -> String {
-    const CLASSES: usize = 6;
-    let column = |name: &str| table.column(name).unwrap_or_default();
-    let (x, y) = (column("position_x"), column("position_y"));
-    let mut speed = vec![0.0; x.len()];
-    for axis in ["x", "y", "z"] {
-        for (square, v) in speed.iter_mut().zip(column(&format!("velocity_{axis}"))) {
-            *square += v * v;
+/// Gives N and ∂N/∂x of the middle one of 7 × 7 nodes, row by row from the top.
+fn middle_function(gamma: f64) -> Result<[Vec<Vec<f64>>; 2], Failure> {
+    const NODES: i32 = 3; // to each side of the middle
+    let mut nodes = Vec::new();
+    for j in -NODES..=NODES {
+        for i in -NODES..=NODES {
+            nodes.push(Vector2::new(f64::from(i), f64::from(j)));
         }
     }
-    let speed: Vec<f64> = speed.into_iter().map(libm::sqrt).collect();
-    let top = largest(&speed);
-    let (per_v, v_prefix) = prefix(top);
-    let class = |v: f64| {
-        if top > 0.0 { ((v / top * CLASSES as f64) as usize).min(CLASSES - 1) } else { 0 }
-    };
-    let bound = |n: usize| format!("{:.3}", n as f64 / CLASSES as f64 * top * per_v);
-    let plots: Vec<Plot> = (0..CLASSES)
-        .rev()
-        .map(|n| {
-            let own = (0..x.len()).filter(|p| class(speed[*p]) == n);
-            ScatterPlot::new()
-                .with_data(own.map(|p| (x[p], y[p])))
-                .with_size(2.2)
-                .with_color(ColorMap::Viridis.map((n as f64 + 0.5) / CLASSES as f64))
-                .with_legend(format!("{} to {} {v_prefix}m/s", bound(n), bound(n + 1)))
-                .into()
-        })
-        .collect();
-    // The body's box, and whatever has left it.
+    let middle = nodes.len() / 2;
+    let at = |n: usize| HALF_WIDTH * (2.0 * n as f64 / (PIXELS - 1) as f64 - 1.0);
+    let mut values = [vec![vec![0.0; PIXELS]; PIXELS], vec![vec![0.0; PIXELS]; PIXELS]];
+    for row in 0..PIXELS {
+        for column in 0..PIXELS {
+            let x = Vector2::new(at(column), -at(row));
+            let (found, _) = values_at(&nodes, 1.0, gamma, 1e-6, &x)?;
+            if let Some((_, N, grad_N)) = found.into_iter().find(|value| value.0 == middle) {
+                values[0][row][column] = N;
+                values[1][row][column] = grad_N[0];
+            }
+        }
+    }
+    Ok(values)
+}
+
+/// Draws the particles of a 2D scene, or of a 3D one seen along z, in six classes of
+/// speed.
+pub fn particles(scene: &Scene, table: &Table, t: f64) -> String {
+    let column = |name: &str| table.column(name).unwrap_or_default();
+    let (x, y) = (column("position_x"), column("position_y"));
+    let places: CurvePoints = x.iter().copied().zip(y.iter().copied()).collect();
+    let plots = by_speed(&places, &speeds(table));
+    // The picture shows the body's box, and whatever has left it.
     let range = |d: usize, list: &[f64]| {
         let (low, high) = (scene.body.origin[d], scene.body.origin[d] + scene.body.length[d]);
         (list.iter().fold(low, |a, b| a.min(*b)), list.iter().fold(high, |a, b| a.max(*b)))
     };
     let (x_range, y_range) = (range(0, &x), range(1, &y));
-    let layout = Layout::auto_from_plots(&plots)
-        .with_width(640.0)
-        .with_height(480.0)
+    let axes = Axes::new(
+        format!("{}: speed of the particles at t = {} s", scene.title, tick(t)),
+        "x [m]",
+        "y [m]",
+        false,
+    );
+    let layout = layout(&plots, (640.0, 480.0), &axes)
+        .with_title_size(15)
         .with_equal_aspect()
         .with_x_axis_min(x_range.0)
         .with_x_axis_max(x_range.1)
         .with_y_axis_min(y_range.0)
-        .with_y_axis_max(y_range.1)
-        .with_title(format!("{}: speed of the particles at t = {} s", scene.title, tick(t)))
-        .with_x_label("x [m]")
-        .with_y_label("y [m]")
-        .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
-        .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
-        .with_title_size(15)
-        .with_legend_position(LegendPosition::OutsideRightTop);
+        .with_y_axis_max(y_range.1);
     own_ids(&render_to_svg(plots, layout))
+}
+
+/// Gives |v| of every particle in a table (m/s).
+fn speeds(table: &Table) -> Vec<f64> {
+    let axes = ["x", "y", "z"].map(|axis| table.column(&format!("velocity_{axis}")));
+    let square = |p: usize| axes.iter().flatten().map(|v| v[p] * v[p]).sum();
+    (0..table.rows().len()).map(|p| libm::sqrt(square(p))).collect()
+}
+
+/// Sorts points into classes of their speed (m/s), the fastest first.
+fn by_speed(places: &CurvePoints, speed: &[f64]) -> Vec<Plot> {
+    const CLASSES: usize = 6;
+    let top = largest(speed);
+    let (per_v, v_prefix) = prefix(top);
+    let class = |v: f64| {
+        if top > 0.0 { ((v / top * CLASSES as f64) as usize).min(CLASSES - 1) } else { 0 }
+    };
+    let bound = |n: usize| format!("{:.3}", n as f64 / CLASSES as f64 * top * per_v);
+    let plot = |n: usize| {
+        let own = places.iter().zip(speed).filter(|(_, v)| class(**v) == n);
+        ScatterPlot::new()
+            .with_data(own.map(|(place, _)| *place))
+            .with_size(2.2)
+            .with_color(ColorMap::Viridis.map((n as f64 + 0.5) / CLASSES as f64))
+            .with_legend(format!("{} to {} {v_prefix}m/s", bound(n), bound(n + 1)))
+            .into()
+    };
+    (0..CLASSES).rev().map(plot).collect()
 }
 
 /// Numbers the clip paths of a picture from 1. The library numbers them through
@@ -395,7 +416,7 @@ fn largest(list: &[f64]) -> f64 {
     list.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))
 }
 
-/// The SI prefix that brings `largest` between 1 and 1000, and its factor.
+/// Finds the SI prefix that brings `largest` between 1 and 1000, and its factor.
 fn prefix(largest: f64) -> (f64, &'static str) {
     const PREFIXES: [(f64, &str); 10] = [
         (1e-12, "T"),
@@ -413,7 +434,7 @@ fn prefix(largest: f64) -> (f64, &'static str) {
     PREFIXES.iter().find(fits).copied().unwrap_or((1.0, ""))
 }
 
-/// A tick label: up to six decimals, no trailing zeros; a power of ten where
+/// Writes a tick label: up to six decimals, no trailing zeros; a power of ten where
 /// that would show nothing.
 fn tick(x: f64) -> String {
     let size = libm::fabs(x);

@@ -1,4 +1,4 @@
-//! Files, each complete or not there.
+//! Files are complete or not there.
 
 use crate::run;
 use crate::scene::fault::Fault;
@@ -7,7 +7,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// The text of a file.
+/// Reads the text of a file.
 ///
 /// Errors: [`Fault::Read`] with the path.
 pub fn text(path: &Path) -> Result<String, Fault> {

@@ -18,19 +18,19 @@ use std::time::Instant;
 /// is the prediction's own, and that of particles on their first way.
 const CERTAIN: f64 = 1.002;
 
-/// The history of a run that broke down.
+/// The history of a run that broke down is left here.
 const FAILED: &str = "history.failed.csv";
 
-/// The particles at the end, in 2D and 3D.
+/// The particles at the end are drawn here, in 2D and 3D.
 const PICTURE: &str = "particles.svg";
 
-/// The list of frames for ParaView.
+/// The list of frames for ParaView stands here.
 const SERIES: &str = "particles.pvd";
 
-/// Files of every complete run, besides one SVG for each probe.
+/// Every complete run leaves these files, besides one SVG for each probe.
 const FILES: [&str; 4] = ["history.csv", "particles.csv", "summary.csv", "cost.csv"];
 
-/// The predicted limit of Δt (s); `None` where it cannot be predicted, and the scene
+/// Gives the predicted limit of Δt (s); `None` where it cannot be predicted, and the scene
 /// breaks down by its own name.
 ///
 /// Errors: [`Fault::Unstable`] for a scene whose Δt is above it, unless it allows that.
@@ -72,9 +72,8 @@ pub fn run_into(
     };
     let mut lines = summary::lines(scene, &outcome, start.elapsed().as_secs_f64());
     if let Some(limit) = limit.map(|limit| limit.min(f64::MAX)) {
-        let line = |quantity: &str, value, unit| Line { quantity: quantity.into(), value, unit };
-        lines.push(line("critical_time_step", limit, "s"));
-        lines.push(line("fraction_of_critical", outcome.dt / limit, "1"));
+        lines.push(Line::new("critical_time_step", limit, "s"));
+        lines.push(Line::new("fraction_of_critical", outcome.dt / limit, "1"));
     }
     let cost = summary::cost_lines(&outcome.cost);
     let mut files = vec![
@@ -137,7 +136,7 @@ fn free_names(dir: &Path, scene: &Scene) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The files that an earlier complete run has left in `dir`: those of every
+/// Lists the files that an earlier complete run has left in `dir`: those of every
 /// run, and a picture for each column of its history.
 fn earlier(dir: &Path) -> Vec<String> {
     let mut files: Vec<String> = FILES.map(String::from).to_vec();
@@ -152,7 +151,7 @@ fn earlier(dir: &Path) -> Vec<String> {
     files
 }
 
-/// `quantity,value,unit`.
+/// Writes `quantity,value,unit`.
 fn lines_csv(lines: &[Line]) -> Result<Vec<u8>, Fault> {
     let row =
         |line: &Line| vec![line.quantity.clone(), shortest(line.value), line.unit.to_string()];

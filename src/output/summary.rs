@@ -4,11 +4,10 @@ use crate::method::cost::Cost;
 use crate::method::exact::Exact;
 use crate::method::measure::rms;
 use crate::run::Outcome;
-use crate::scene::wave_speed;
-use crate::scene::{Motion, Quantity, Scene};
+use crate::scene::{Motion, Probe, Quantity, Scene, wave_speed};
 use crate::setup;
 
-/// One line of the summary.
+/// A line of the summary is a number with a name and a unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     pub quantity: String,
@@ -16,7 +15,13 @@ pub struct Line {
     pub unit: &'static str,
 }
 
-/// The scales that make errors relative. For a body thrown at v0 they are those of
+impl Line {
+    pub fn new(quantity: impl Into<String>, value: f64, unit: &'static str) -> Self {
+        Line { quantity: quantity.into(), value, unit }
+    }
+}
+
+/// These scales make errors relative. For a body thrown at v0 they are those of
 /// the bar: v0, the plateau Z v0/2, and v0 L/4c. For a mode they are V, Z V and V/ω
 /// with its largest speed V; for loads V, Z V and V L/c with V = b L/c + t/Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +68,7 @@ impl Scales {
         Scales { velocity, stress: rho * c * velocity, displacement }
     }
 
-    /// The scale of a quantity.
+    /// Picks the scale of a quantity.
     pub fn scale(&self, quantity: Quantity) -> f64 {
         match quantity {
             Quantity::Velocity(_) => self.velocity,
@@ -73,88 +78,102 @@ impl Scales {
     }
 }
 
-/// All lines of the summary; `wall_time` (s) of the time loop.
+/// Gives all lines of the summary; `wall_time` (s) of the time loop.
 pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<Line> {
     let mut lines = Vec::new();
-    let mut add = |quantity: String, value: f64, unit| lines.push(Line { quantity, value, unit });
-    let scales = Scales::of(scene);
     let exact = setup::exact(scene).is_ok();
-    let column = |name: &str| outcome.history.column(name).unwrap_or_default();
-    let peak = |list: &[f64]| list.iter().fold(0.0, |peak: f64, x| peak.max(x.abs()));
-
+    let scales = Scales::of(scene);
     for probe in &scene.probes {
-        let name = &probe.name;
-        let unit = probe.quantity.name_unit().1;
-        let computed = column(name);
-        if exact {
-            let expected = column(&format!("{name}_exact"));
-            let error = rms(computed.iter().copied().zip(expected.iter().copied()));
-            add(format!("{name}_rms"), error, unit);
-            let scale = scales.scale(probe.quantity);
-            if scale > 0.0 {
-                add(format!("{name}_rms_relative"), error / scale, "1");
-            }
-            add(format!("{name}_peak_exact"), peak(&expected), unit);
-        }
-        add(format!("{name}_peak"), peak(&computed), unit);
+        probe_lines(&mut lines, probe, outcome, exact.then(|| scales.scale(probe.quantity)));
     }
     if exact {
-        let of = |name: &str| outcome.particles.column(name).unwrap_or_default();
-        for (name, unit, scale) in [
-            ("velocity", "m/s", scales.velocity),
-            ("stress", "Pa", scales.stress),
-            ("displacement", "m", scales.displacement),
-        ] {
-            let error = rms(of(name).into_iter().zip(of(&format!("{name}_exact"))));
-            add(format!("{name}_field_rms"), error, unit);
-            if scale > 0.0 {
-                add(format!("{name}_field_rms_relative"), error / scale, "1");
-            }
-        }
+        field_lines(&mut lines, &scales, outcome);
     }
-    let kinetic = column("kinetic_energy");
-    let total: Vec<f64> = kinetic
-        .iter()
-        .zip(column("strain_energy"))
-        .map(|(kinetic, strain)| kinetic + strain)
-        .collect();
-    if let (Some(&first), Some(&last)) = (total.first(), total.last()) {
-        add("energy_start".into(), first, "J");
-        add("energy_end".into(), last, "J");
-        if scene.is_loaded() {
-            let work = column("work");
-            add("work_end".into(), work.last().copied().unwrap_or_default(), "J");
-            let largest = peak(&total);
-            let balance: Vec<f64> =
-                total.iter().zip(&work).map(|(energy, work)| energy - first - work).collect();
-            if largest > 0.0 {
-                add("energy_balance_largest".into(), peak(&balance) / largest, "1");
-            }
-        } else if first > 0.0 {
-            let drift: Vec<f64> = total.iter().map(|energy| energy / first - 1.0).collect();
-            add("energy_drift".into(), last / first - 1.0, "1");
-            add("energy_drift_largest".into(), peak(&drift), "1");
-        }
-    }
-    add("time_step".into(), outcome.dt, "s");
-    add("courant_number".into(), scene.courant_number(), "1");
-    add("wall_time".into(), wall_time, "s");
+    energy_lines(&mut lines, scene, outcome);
+    lines.push(Line::new("time_step", outcome.dt, "s"));
+    lines.push(Line::new("courant_number", scene.courant_number(), "1"));
+    lines.push(Line::new("wall_time", wall_time, "s"));
     lines
 }
 
-/// The unit of a cost counter.
+/// Finds the largest size in a list.
+fn peak(list: &[f64]) -> f64 {
+    list.iter().fold(0.0, |peak: f64, x| peak.max(x.abs()))
+}
+
+/// Adds the peak of a probe's history, and its error where the exact solution gives a `scale`.
+fn probe_lines(lines: &mut Vec<Line>, probe: &Probe, outcome: &Outcome, scale: Option<f64>) {
+    let mut add = |what: &str, value, unit| {
+        lines.push(Line::new(format!("{}_{what}", probe.name), value, unit));
+    };
+    let column = |name: &str| outcome.history.column(name).unwrap_or_default();
+    let unit = probe.quantity.name_unit().1;
+    let computed = column(&probe.name);
+    if let Some(scale) = scale {
+        let expected = column(&format!("{}_exact", probe.name));
+        let error = rms(computed.iter().copied().zip(expected.iter().copied()));
+        add("rms", error, unit);
+        if scale > 0.0 {
+            add("rms_relative", error / scale, "1");
+        }
+        add("peak_exact", peak(&expected), unit);
+    }
+    add("peak", peak(&computed), unit);
+}
+
+/// Adds the errors of all particles at the end.
+fn field_lines(lines: &mut Vec<Line>, scales: &Scales, outcome: &Outcome) {
+    let of = |name: &str| outcome.particles.column(name).unwrap_or_default();
+    for (name, unit, scale) in [
+        ("velocity", "m/s", scales.velocity),
+        ("stress", "Pa", scales.stress),
+        ("displacement", "m", scales.displacement),
+    ] {
+        let error = rms(of(name).into_iter().zip(of(&format!("{name}_exact"))));
+        lines.push(Line::new(format!("{name}_field_rms"), error, unit));
+        if scale > 0.0 {
+            lines.push(Line::new(format!("{name}_field_rms_relative"), error / scale, "1"));
+        }
+    }
+}
+
+/// Adds the energy at both ends of the run, and how far it drifted from the start, or from
+/// the work of the loads.
+fn energy_lines(lines: &mut Vec<Line>, scene: &Scene, outcome: &Outcome) {
+    let mut add = |quantity: &str, value, unit| lines.push(Line::new(quantity, value, unit));
+    let column = |name: &str| outcome.history.column(name).unwrap_or_default();
+    let (kinetic, strain) = (column("kinetic_energy"), column("strain_energy"));
+    let total: Vec<f64> = kinetic.iter().zip(&strain).map(|(k, s)| k + s).collect();
+    let (Some(&first), Some(&last)) = (total.first(), total.last()) else {
+        return;
+    };
+    add("energy_start", first, "J");
+    add("energy_end", last, "J");
+    if scene.is_loaded() {
+        let work = column("work");
+        add("work_end", work.last().copied().unwrap_or_default(), "J");
+        let largest = peak(&total);
+        let balance: Vec<f64> =
+            total.iter().zip(&work).map(|(energy, work)| energy - first - work).collect();
+        if largest > 0.0 {
+            add("energy_balance_largest", peak(&balance) / largest, "1");
+        }
+    } else if first > 0.0 {
+        let drift: Vec<f64> = total.iter().map(|energy| energy / first - 1.0).collect();
+        add("energy_drift", last / first - 1.0, "1");
+        add("energy_drift_largest", peak(&drift), "1");
+    }
+}
+
+/// Gives the unit of a cost counter.
 pub fn cost_unit(name: &str) -> &'static str {
     if name == "bytes_per_particle" { "B" } else { "1" }
 }
 
-/// The cost counters as lines.
+/// Gives the cost counters as lines.
 pub fn cost_lines(cost: &Cost) -> Vec<Line> {
     cost.named()
         .into_iter()
-        .map(|(name, count)| Line {
-            quantity: name.to_string(),
-            value: count as f64,
-            unit: cost_unit(name),
-        })
+        .map(|(name, count)| Line::new(name, count as f64, cost_unit(name)))
         .collect()
 }

@@ -9,18 +9,18 @@ use vtkio::model::{
     Version, VertexNumbers, Vtk,
 };
 
-/// The name of frame `n`.
+/// Names frame `n`.
 pub fn name(n: usize) -> String {
     format!("particles_{n:06}.vtu")
 }
 
-/// True for the name of a frame, of any run.
+/// Tells whether this is the name of a frame, of any run.
 pub fn is_frame(name: &str) -> bool {
     let number = name.strip_prefix("particles_").and_then(|rest| rest.strip_suffix(".vtu"));
     number.is_some_and(|n| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()))
 }
 
-/// All files of the series.
+/// Writes all files of the series.
 ///
 /// Errors: [`Fault::Write`].
 pub fn files(frames: &[Frame]) -> Result<Vec<(String, Vec<u8>)>, Fault> {
@@ -34,33 +34,17 @@ pub fn files(frames: &[Frame]) -> Result<Vec<(String, Vec<u8>)>, Fault> {
     Ok(files)
 }
 
-/// Each particle is a vertex with its displacement, velocity, stress, density
-/// and mass; missing axes are 0.
+/// Writes each particle as a vertex with its displacement, velocity, stress, density and
+/// mass; missing axes are 0.
 fn vtu(particles: &Table) -> Result<Vec<u8>, Fault> {
     let count = particles.rows().len();
-    let column = |name: String| particles.column(&name).unwrap_or_else(|| vec![0.0; count]);
-    // The components p = 0, 1, … of every particle, one particle after the other.
-    let together = |names: Vec<String>| -> IOBuffer {
-        let columns: Vec<Vec<f64>> = names.into_iter().map(column).collect();
-        let values = (0..count).flat_map(|p| columns.iter().map(move |column| column[p]));
-        values.collect::<Vec<f64>>().into()
-    };
-    let axes = ["x", "y", "z"];
-    let vector = |name: &str| together(axes.iter().map(|axis| format!("{name}_{axis}")).collect());
-    // Only the upper half of the symmetric stress is in the table.
-    let tensor = (0..9).map(|n: usize| (n / 3, n % 3)).map(|(i, j)| {
-        let (i, j) = (i.min(j), i.max(j));
-        format!("stress_{}{}", axes[i], axes[j])
-    });
-    let scalar =
-        |name: &str| Attribute::scalars(name, 1).with_data(together(vec![name.to_string()]));
     let vtk = Vtk {
         version: Version::new_xml(1, 0),
         title: String::new(),
         byte_order: ByteOrder::LittleEndian,
         file_path: None,
         data: DataSet::inline(UnstructuredGridPiece {
-            points: vector("position"),
+            points: together(particles, &vector("position")),
             cells: Cells {
                 cell_verts: VertexNumbers::XML {
                     connectivity: (0..count as u64).collect(),
@@ -68,16 +52,7 @@ fn vtu(particles: &Table) -> Result<Vec<u8>, Fault> {
                 },
                 types: vec![CellType::Vertex; count],
             },
-            data: Attributes {
-                point: vec![
-                    Attribute::vectors("displacement").with_data(vector("displacement")),
-                    Attribute::vectors("velocity").with_data(vector("velocity")),
-                    Attribute::tensors("stress").with_data(together(tensor.collect())),
-                    scalar("density"),
-                    scalar("mass"),
-                ],
-                cell: Vec::new(),
-            },
+            data: Attributes { point: attributes(particles), cell: Vec::new() },
         }),
     };
     let mut bytes = Vec::new();
@@ -88,7 +63,45 @@ fn vtu(particles: &Table) -> Result<Vec<u8>, Fault> {
     Ok(bytes)
 }
 
-/// The list of files with their times (s).
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Names the columns of a vector.
+fn vector(name: &str) -> Vec<String> {
+    AXES.iter().map(|axis| format!("{name}_{axis}")).collect()
+}
+
+/// Names the columns of the stress, of whose symmetric halves the table has the upper one.
+fn tensor() -> Vec<String> {
+    let pairs = (0..9).map(|n: usize| (n / 3, n % 3));
+    pairs.map(|(i, j)| format!("stress_{}{}", AXES[i.min(j)], AXES[i.max(j)])).collect()
+}
+
+/// Lists what every particle carries.
+fn attributes(particles: &Table) -> Vec<Attribute> {
+    let scalar = |name: &str| {
+        Attribute::scalars(name, 1).with_data(together(particles, &[name.to_string()]))
+    };
+    let vectors =
+        |name: &str| Attribute::vectors(name).with_data(together(particles, &vector(name)));
+    vec![
+        vectors("displacement"),
+        vectors("velocity"),
+        Attribute::tensors("stress").with_data(together(particles, &tensor())),
+        scalar("density"),
+        scalar("mass"),
+    ]
+}
+
+/// Puts the components of every particle together, one particle after the other.
+fn together(particles: &Table, names: &[String]) -> IOBuffer {
+    let count = particles.rows().len();
+    let column = |name: &String| particles.column(name).unwrap_or_else(|| vec![0.0; count]);
+    let columns: Vec<Vec<f64>> = names.iter().map(column).collect();
+    let values = (0..count).flat_map(|p| columns.iter().map(move |column| column[p]));
+    values.collect::<Vec<f64>>().into()
+}
+
+/// Writes the list of files with their times (s).
 fn pvd(frames: &[Frame]) -> Vec<u8> {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n\

@@ -25,3 +25,4 @@ pub use parts::*;
 pub use read::{Declared, declare};
 pub use shipped::{DYKA, SHIPPED, Shipped, neither, shipped};
 pub use sizes::wave_speed;
+pub use source::merged;

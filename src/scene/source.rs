@@ -2,7 +2,9 @@
 //! back from a byte to the place where it was written.
 
 use super::fault::SceneError;
-use super::keys;
+use super::keys::{self, KEYS};
+use super::kind::nearest;
+use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -24,6 +26,15 @@ impl Passage {
     }
 }
 
+/// The table of a scene with the `sets` merged in; nothing of it is checked.
+///
+/// Errors: [`SceneError`] for what is no TOML, or no `KEY=VALUE`.
+pub fn merged(path: &str, text: &str, sets: &[String]) -> Result<toml::Table, Box<SceneError>> {
+    let source = Source::new(path, text, sets);
+    let table = toml::Table::deserialize(toml::Deserializer::from(source.table()?));
+    table.map_err(|error| source.error("", error.span().unwrap_or(0..0), error.message()))
+}
+
 /// A scene's text: the file first, then one passage for each `--set`.
 ///
 /// Every passage is parsed as if it followed those before it, so that one
@@ -33,7 +44,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// The passages of a scene; `sets` are the arguments `KEY=VALUE` of `--set`.
+    /// The passages of a scene; `sets` are the arguments of `--set`: `KEY=VALUE` gives a
+    /// value, `KEY=` takes it out.
     pub fn new(path: &str, text: &str, sets: &[String]) -> Self {
         let mut source = Source { passages: Vec::new() };
         source.add(path.to_string(), text);
@@ -89,8 +101,12 @@ impl Source {
                 error.allowed = SET.to_string();
                 error
             };
-            let table = self.parse(set).map_err(with_help)?.into_inner();
             let text = set.text();
+            if let Some(key) = text.strip_suffix('=') {
+                self.take_out(merged.get_mut(), key, set.start)?;
+                continue;
+            }
+            let table = self.parse(set).map_err(with_help)?.into_inner();
             let line = !text.trim_start().starts_with('[') && !text.contains('\n');
             if table.len() != 1 || !text.contains('=') || !line {
                 let span = set.start..set.padded.len();
@@ -106,6 +122,35 @@ impl Source {
             let span = error.span().unwrap_or(passage.start..passage.start);
             self.error("", span, error.message())
         })
+    }
+
+    /// Takes the value of `key`, whose name stands at `start`, out of the table; one that
+    /// is not there is no error, one that no scene can have is.
+    fn take_out(
+        &self,
+        table: &mut DeTable<'_>,
+        key: &str,
+        start: usize,
+    ) -> Result<(), Box<SceneError>> {
+        let span = start..start + key.len();
+        if keys::find(key).is_none() {
+            let mut error = self.error(key, span, "this key is not known");
+            error.suggestion = nearest(key, KEYS.iter().map(|key| key.path));
+            return Err(error);
+        }
+        let (mut table, mut rest) = (table, key);
+        while let Some((parent, inside)) = rest.split_once('.') {
+            match table.get_mut(parent).map(Spanned::get_mut) {
+                Some(DeValue::Table(inner)) => (table, rest) = (inner, inside),
+                Some(_) => {
+                    let problem = format!("`{parent}` is not a table here");
+                    return Err(self.error(key, span, problem));
+                }
+                None => return Ok(()),
+            }
+        }
+        table.remove(rest);
+        Ok(())
     }
 
     fn merge_table<'i>(

@@ -1,83 +1,115 @@
-//! One way to compute a scene: method, mass, basis, integrator, grid and time step,
-//! with a name in one word, and the scene file that goes with it.
+//! A configuration is one way to compute a scene, written as a list of `KEY=VALUE`; a
+//! template is the scene that is computed in many ways.
 
 use crate::run;
-use crate::scene::Scene;
-use crate::scene::fault::{Fault, SceneError};
-use std::path::{Path, PathBuf};
-use toml::{Table, Value};
+use crate::scene::fault::Fault;
+use crate::scene::{Scene, merged};
+use std::path::Path;
 
-/// A scene file as a template for its variants.
-#[derive(Clone, Debug)]
-pub struct Template {
-    /// Where it was read, for messages and commands.
-    pub path: PathBuf,
-    table: Table,
-}
+/// These keys are what a study varies. A configuration answers for all of them: what the scene
+/// says of them itself is taken out first.
+pub const KEYS: [&str; 14] = [
+    "method",
+    "mass",
+    "basis.kind",
+    "basis.gamma",
+    "basis.cutoff",
+    "time.integrator",
+    "time.reading",
+    "time.stress_update",
+    "time.rho_b",
+    "grid.cells",
+    "grid.particles_per_cell",
+    "grid.beyond",
+    "time.cfl",
+    "time.fraction_of_critical",
+];
 
-/// One way to compute a scene.
+/// A configuration gives values of [`KEYS`] in the form `KEY=VALUE` that `--set` takes. It
+/// is written and read as one line, with a space between them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Configuration {
-    /// "mpm" or "otm".
-    pub method: String,
-    /// "lumped" or "consistent".
-    pub mass: String,
-    /// The kind, for lme with γ and cut-off: "linear", "lme-0.8", "lme-4-0.01".
-    pub basis: String,
-    /// The kind, with what it needs: "newmark", "forward-euler-last",
-    /// "generalized-alpha-0.8".
-    pub integrator: String,
-    /// The scene's cells are multiplied by this.
-    pub refinement: f64,
-    pub particles_per_cell: usize,
-    pub cfl: f64,
+pub struct Configuration(Vec<String>);
+
+impl Configuration {
+    /// Gives the value of a key, which is empty if the configuration leaves it out.
+    pub fn value(&self, key: &str) -> &str {
+        let mut values = self.0.iter().filter_map(|set| set.strip_prefix(key)?.strip_prefix('='));
+        values.next().unwrap_or("")
+    }
+
+    /// Puts the values of some keys side by side, as in "lme 0.8".
+    pub fn words(&self, keys: &[&str]) -> String {
+        let values = keys.iter().map(|key| self.value(key)).filter(|value| !value.is_empty());
+        values.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Tells whether these are linear finite elements: OTM with the linear basis. Studies
+    /// compare with them, but they stand on no front and are never the cheapest: where no
+    /// particle is needed, they win.
+    pub fn is_finite_elements(&self) -> bool {
+        self.value("method") == "otm" && self.value("basis.kind") == "linear"
+    }
+
+    /// Names the group that gives the colour in a diagram: basis and mass, or the method.
+    pub fn family(&self) -> String {
+        match self.value("method") {
+            _ if self.is_finite_elements() => "finite elements".to_string(),
+            "otm" => "otm".to_string(),
+            _ => format!("{}, {}", self.value("basis.kind"), self.value("mass")),
+        }
+    }
 }
 
 impl std::fmt::Display for Configuration {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "{}/{}/{}/{}/{}/{}/{}",
-            self.method,
-            self.mass,
-            self.basis,
-            self.integrator,
-            self.refinement,
-            self.particles_per_cell,
-            self.cfl
-        )
+        f.write_str(&self.0.join(" "))
     }
 }
 
 impl std::str::FromStr for Configuration {
     type Err = Fault;
 
-    fn from_str(text: &str) -> Result<Self, Fault> {
+    /// Reads a line of `KEY=VALUE`.
+    ///
+    /// Errors: [`Fault::Argument`] for what is none, and for a key that no study varies or
+    /// that is given twice. Values are checked with the scene.
+    fn from_str(line: &str) -> Result<Self, Fault> {
         let fault = |problem: String| Fault::Argument {
             argument: "--row",
             problem,
-            allowed: "method/mass/basis/integrator/refinement/particles per cell/cfl, as --list prints it",
+            allowed: "a line of KEY=VALUE with spaces between them and none inside, as --list \
+                      prints it",
         };
-        let parts: Vec<&str> = text.split('/').collect();
-        let [method, mass, basis, integrator, refinement, per_cell, cfl] = parts[..] else {
-            return Err(fault(format!("`{text}` has {} parts", parts.len())));
-        };
-        let number = |text: &str| match text.parse::<f64>() {
-            Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
-            _ => Err(fault(format!("`{text}` is not a number above 0"))),
-        };
-        Ok(Configuration {
-            method: method.to_string(),
-            mass: mass.to_string(),
-            basis: basis.to_string(),
-            integrator: integrator.to_string(),
-            refinement: number(refinement)?,
-            particles_per_cell: per_cell
-                .parse()
-                .map_err(|_| fault(format!("`{per_cell}` is not a whole number")))?,
-            cfl: number(cfl)?,
-        })
+        let mut found: Vec<&str> = Vec::new();
+        for set in line.split_whitespace() {
+            let key = match set.split_once('=') {
+                Some((key, value)) if !value.is_empty() => key,
+                _ => return Err(fault(format!("`{set}` is not KEY=VALUE"))),
+            };
+            if !KEYS.contains(&key) {
+                return Err(fault(format!("`{key}` is not one of {}", KEYS.join(", "))));
+            }
+            if found.contains(&key) {
+                return Err(fault(format!("`{key}` stands there twice")));
+            }
+            found.push(key);
+        }
+        if found.is_empty() {
+            return Err(fault("nothing is given".to_string()));
+        }
+        Ok(Configuration(line.split_whitespace().map(String::from).collect()))
     }
+}
+
+/// A template is a scene that is computed in many ways.
+#[derive(Clone, Debug)]
+pub struct Template {
+    /// The scene as it is written.
+    pub scene: Scene,
+    path: String,
+    text: String,
+    /// `grid.beyond` as it is written: sides and cells.
+    beyond: Vec<(String, i64)>,
 }
 
 impl Template {
@@ -85,132 +117,68 @@ impl Template {
     ///
     /// Errors: [`Fault::Scene`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, Fault> {
-        let name = path.display().to_string();
-        run::parse("scene", &name, text, &[])?;
-        let table: Table = text.parse().map_err(|error: toml::de::Error| {
-            Fault::Scene(Box::new(SceneError {
-                path: name,
-                text: text.to_string(),
-                span: error.span().unwrap_or(0..0),
-                key: String::new(),
-                problem: error.message().to_string(),
-                allowed: String::new(),
-                suggestion: None,
-            }))
-        })?;
-        Ok(Template { path: path.to_path_buf(), table })
+        let path = path.display().to_string();
+        let scene = run::parse("scene", &path, text, &[])?;
+        let table = merged(&path, text, &[])?;
+        let sides = table.get("grid").and_then(|grid| grid.get("beyond")?.as_table());
+        let cells = |(side, n): (&String, &toml::Value)| Some((side.clone(), n.as_integer()?));
+        let beyond = sides.into_iter().flatten().filter_map(cells).collect();
+        Ok(Template { scene, path, text: text.to_string(), beyond })
     }
 
-    /// The scene file of one configuration. What only the template's own basis,
-    /// integrator or method needed is left out.
-    pub fn text(&self, configuration: &Configuration) -> String {
-        let mut table = self.table.clone();
-        let text = |text: &str| Value::String(text.to_string());
-        table.insert("method".into(), text(&configuration.method));
-        table.insert("mass".into(), text(&configuration.mass));
-        table.insert("basis".into(), Value::Table(basis(&configuration.basis)));
-        if let Some(time) = table.get_mut("time").and_then(Value::as_table_mut) {
-            for key in ["reading", "stress_update", "rho_b", "fraction_of_critical"] {
-                time.remove(key);
-            }
-            time.extend(integrator(&configuration.integrator));
-            time.insert("cfl".into(), Value::Float(configuration.cfl));
+    /// Writes the grid of `method` as part of a configuration: the scene's cells times
+    /// `refinement`, at least one, and as many of them beyond the body as it asks for.
+    pub fn grid(&self, method: &str, refinement: f64, particles_per_cell: usize) -> String {
+        let refined = |cells: f64| libm::round(cells * refinement).max(1.0);
+        let list = |values: Vec<String>| match values.as_slice() {
+            [one] => one.clone(),
+            _ => format!("[{}]", values.join(",")),
+        };
+        let cells = self.scene.grid.cells.iter().map(|n| refined(*n as f64).to_string()).collect();
+        let per_cell = vec![particles_per_cell.to_string(); self.scene.dimension()];
+        let mut grid =
+            format!("grid.cells={} grid.particles_per_cell={}", list(cells), list(per_cell));
+        // OTM has no nodes beyond the body.
+        if method == "mpm" && !self.beyond.is_empty() {
+            let cells = |n: i64| if n > 0 { refined(n as f64) } else { 0.0 };
+            let sides = self.beyond.iter().map(|(side, n)| format!("{side}={}", cells(*n)));
+            grid += &format!(" grid.beyond={{{}}}", sides.collect::<Vec<_>>().join(","));
         }
-        if let Some(grid) = table.get_mut("grid").and_then(Value::as_table_mut) {
-            let refined = |cells: &Value| {
-                let cells = cells.as_integer().unwrap_or(1) as f64 * configuration.refinement;
-                Value::Integer((libm::round(cells) as i64).max(1))
-            };
-            let cells = grid.get("cells").cloned().unwrap_or(Value::Integer(1));
-            let (cells, per_cell) = match &cells {
-                Value::Array(list) => (
-                    Value::Array(list.iter().map(refined).collect()),
-                    Value::Array(vec![
-                        Value::Integer(configuration.particles_per_cell as i64);
-                        list.len()
-                    ]),
-                ),
-                one => (refined(one), Value::Integer(configuration.particles_per_cell as i64)),
-            };
-            grid.insert("cells".into(), cells);
-            grid.insert("particles_per_cell".into(), per_cell);
-            if configuration.method == "otm" {
-                grid.remove("beyond");
-            } else if let Some(beyond) = grid.get_mut("beyond").and_then(Value::as_table_mut) {
-                for (_, cells) in beyond.iter_mut() {
-                    *cells = match cells.as_integer() {
-                        Some(n) if n > 0 => refined(&Value::Integer(n)),
-                        _ => Value::Integer(0),
-                    };
-                }
-            }
-        }
-        table.to_string()
+        grid
     }
 
-    /// The scene of the template itself.
-    ///
-    /// Errors: [`Fault::Scene`].
-    pub fn scene_as_it_is(&self) -> Result<Scene, Fault> {
-        let name = self.path.display().to_string();
-        Ok(run::parse("scene", &name, &self.table.to_string(), &[])?)
+    /// Lists the `--set` that make one configuration of the scene.
+    fn sets(configuration: &Configuration) -> Vec<String> {
+        let mut sets = KEYS.map(|key| format!("{key}=")).to_vec();
+        sets.extend_from_slice(&configuration.0);
+        sets
     }
 
-    /// Number of axes.
-    pub fn dimension(&self) -> usize {
-        let length = self.table.get("body").and_then(|body| body.get("length"));
-        length.and_then(Value::as_array).map_or(1, Vec::len)
-    }
-
-    /// The scene of one configuration.
+    /// Reads the scene of one configuration.
     ///
     /// Errors: [`Fault::Scene`] for one that the scene cannot have.
     pub fn scene(&self, configuration: &Configuration) -> Result<Scene, Fault> {
-        let name = format!("{} as {configuration}", self.path.display());
-        Ok(run::parse("scene", &name, &self.text(configuration), &[])?)
+        Ok(run::parse("scene", &self.path, &self.text, &Self::sets(configuration))?)
     }
-}
 
-/// "lme-0.8-1e-6": the kind, γ, the cut-off. (A minus sign is part of a number.)
-fn basis(text: &str) -> Table {
-    let mut table = Table::new();
-    let Some(numbers) = text.strip_prefix("lme-") else {
-        table.insert("kind".into(), Value::String(text.to_string()));
-        return table;
-    };
-    table.insert("kind".into(), Value::String("lme".into()));
-    // The whole is γ, or it is cut at the first minus sign that leaves two numbers.
-    let number = |text: &str| text.parse::<f64>().ok();
-    let mut cuts = numbers.match_indices('-').map(|(at, _)| (&numbers[..at], &numbers[at + 1..]));
-    let two = cuts.find_map(|(gamma, cutoff)| Some((number(gamma)?, number(cutoff)?)));
-    match (number(numbers), two) {
-        (Some(gamma), _) => {
-            table.insert("gamma".into(), Value::Float(gamma));
-        }
-        (None, Some((gamma, cutoff))) => {
-            table.insert("gamma".into(), Value::Float(gamma));
-            table.insert("cutoff".into(), Value::Float(cutoff));
-        }
-        // Said as it is, so that the scene refuses it by name.
-        (None, None) => {
-            table.insert("gamma".into(), Value::String(numbers.to_string()));
-        }
+    /// Writes the scene file of one configuration.
+    ///
+    /// Errors: [`Fault::Scene`] for one whose keys the scene cannot have.
+    pub fn file(&self, configuration: &Configuration) -> Result<String, Fault> {
+        Ok(merged(&self.path, &self.text, &Self::sets(configuration))?.to_string())
     }
-    table
-}
 
-fn integrator(text: &str) -> Table {
-    let mut table = Table::new();
-    let kinds = [("forward-euler-", "stress_update"), ("generalized-alpha-", "rho_b")];
-    let found = kinds.iter().find_map(|(kind, key)| Some((kind, key, text.strip_prefix(kind)?)));
-    let kind = match found {
-        Some((kind, key, rest)) => {
-            let value = rest.parse().map_or(Value::String(rest.to_string()), Value::Float);
-            table.insert((*key).into(), value);
-            kind.trim_end_matches('-')
-        }
-        None => text,
-    };
-    table.insert("integrator".into(), Value::String(kind.to_string()));
-    table
+    /// Tells one study from another by a digest of the scene: FNV-1a of its cells and of all
+    /// that configurations do not vary.
+    ///
+    /// Errors: none for a scene that could be read.
+    pub fn digest(&self) -> Result<String, Fault> {
+        let grid = self.grid("mpm", 1.0, 1);
+        let any = "method=mpm mass=lumped basis.kind=linear time.integrator=newmark time.cfl=1";
+        let text = self.file(&format!("{any} {grid}").parse()?)?;
+        let digest = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        });
+        Ok(format!("{digest:016x}"))
+    }
 }

@@ -1,11 +1,12 @@
-//! The parametric study of γ: from the mesh-free end to the finite-element end.
+//! The parametric study varies γ from the mesh-free end to the finite-element end.
 
 use super::configuration::{Configuration, Template};
 use super::pool;
+use crate::output::figure::CurvePoints;
 use crate::output::summary;
+use crate::run::run;
 use crate::run::stability;
 use crate::run::table::{csv, shortest};
-use crate::run::{self, run};
 use crate::scene::DYKA;
 use crate::scene::fault::Fault;
 use std::path::Path;
@@ -13,70 +14,119 @@ use std::path::Path;
 /// The values of γ.
 pub const GAMMAS: [f64; 12] = [0.3, 0.5, 0.8, 1.0, 1.4, 1.8, 2.5, 4.0, 6.0, 10.0, 20.0, 50.0];
 
-/// What is varied beside γ: method, mass, particles per cell, cΔt/h.
-pub const WAYS: [(&str, &str, &str, usize, f64); 3] = [
-    ("mpm lumped", "mpm", "lumped", 2, 0.5),
-    ("mpm consistent", "mpm", "consistent", 2, 0.2),
-    ("otm", "otm", "lumped", 1, 0.5),
+/// A way is what is varied beside γ.
+pub struct Way {
+    pub name: &'static str,
+    method: &'static str,
+    mass: &'static str,
+    particles_per_cell: usize,
+    cfl: f64,
+}
+
+pub const WAYS: [Way; 3] = [
+    Way { name: "mpm lumped", method: "mpm", mass: "lumped", particles_per_cell: 2, cfl: 0.5 },
+    Way {
+        name: "mpm consistent",
+        method: "mpm",
+        mass: "consistent",
+        particles_per_cell: 2,
+        cfl: 0.2,
+    },
+    Way { name: "otm", method: "otm", mass: "lumped", particles_per_cell: 1, cfl: 0.5 },
 ];
 
-/// Columns of [`Row::values`].
-pub const COLUMNS: [&str; 10] = [
-    "velocity",
-    "stress",
-    "displacement",
-    "overshoot",
-    "total_variation",
-    "dispersion",
-    "energy_drift",
-    "pairs_per_particle",
-    "exponentials_per_particle",
-    "critical_courant",
-];
+/// This bar has length, modulus and density 1, and vibrates in a mode of four waves.
+const WAVE: &str = "
+title = 'wave'
+method = 'mpm'
+mass = 'lumped'
+body = { length = 1, density = 1, youngs_modulus = 1, poisson_ratio = 0 }
+grid = { cells = 32, particles_per_cell = 2 }
+basis = { kind = 'linear' }
+time = { integrator = 'newmark', cfl = 0.02, end = 0.0625 }
+boundary = { left = 'fixed', right = 'fixed' }
+vibration = { mode = 8, velocity = 1e-7 }
+";
 
-/// One γ in one way; values as in [`COLUMNS`], or why there are none.
+/// An effect is what γ does to the bar.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effect {
+    /// Relative errors on the bar.
+    pub velocity: f64,
+    pub stress: f64,
+    pub displacement: f64,
+    /// Of the stress, over its largest exact value.
+    pub overshoot: f64,
+    /// Of the stress, relative to the exact one.
+    pub total_variation: f64,
+    /// Relative error of the frequency of a wave of eight cells.
+    pub dispersion: f64,
+    pub energy_drift: f64,
+    pub pairs_per_particle: f64,
+    pub exponentials_per_particle: f64,
+    /// The predicted limit of c Δt / h.
+    pub critical_courant: f64,
+}
+
+impl Effect {
+    /// Lists every number with its name, in the order of the columns.
+    pub fn named(&self) -> [(&'static str, f64); 10] {
+        [
+            ("velocity", self.velocity),
+            ("stress", self.stress),
+            ("displacement", self.displacement),
+            ("overshoot", self.overshoot),
+            ("total_variation", self.total_variation),
+            ("dispersion", self.dispersion),
+            ("energy_drift", self.energy_drift),
+            ("pairs_per_particle", self.pairs_per_particle),
+            ("exponentials_per_particle", self.exponentials_per_particle),
+            ("critical_courant", self.critical_courant),
+        ]
+    }
+}
+
+/// One γ in one way has its effect, or a reason why that is not known.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct AtGamma {
     pub way: &'static str,
     pub gamma: f64,
-    pub values: Result<Vec<f64>, String>,
+    pub effect: Result<Effect, String>,
 }
 
-/// The bar of Dyka and Ingel at every γ in every way.
-pub fn rows(jobs: usize, progress: &mut dyn FnMut()) -> Result<Vec<Row>, Fault> {
-    let template = Template::parse(Path::new("dyka.toml"), DYKA)?;
-    let items: Vec<(usize, f64)> =
-        (0..WAYS.len()).flat_map(|way| GAMMAS.map(|gamma| (way, gamma))).collect();
-    let mut rows: Vec<Option<Row>> = vec![None; items.len()];
-    pool::run(
-        &items,
-        jobs,
-        |(way, gamma)| Row {
-            way: WAYS[*way].0,
-            gamma: *gamma,
-            values: values(&template, *way, *gamma),
-        },
-        |n, row| {
-            rows[n] = Some(row);
-            progress();
-            Ok::<(), Fault>(())
-        },
-    )?;
-    Ok(rows.into_iter().flatten().collect())
-}
-
-fn values(template: &Template, way: usize, gamma: f64) -> Result<Vec<f64>, String> {
-    let (_, method, mass, particles_per_cell, cfl) = WAYS[way];
-    let configuration = Configuration {
-        method: method.into(),
-        mass: mass.into(),
-        basis: format!("lme-{gamma}"),
-        integrator: "newmark".into(),
-        refinement: 1.0,
-        particles_per_cell,
-        cfl,
+/// Runs the bar of Dyka and Ingel at every γ in every way; `progress` hears of every one.
+pub fn study(jobs: usize, progress: &mut dyn FnMut()) -> Result<Vec<AtGamma>, Fault> {
+    let bar = Template::parse(Path::new("dyka.toml"), DYKA)?;
+    let wave = Template::parse(Path::new("wave.toml"), WAVE)?;
+    let items: Vec<(&Way, f64)> =
+        WAYS.iter().flat_map(|way| GAMMAS.map(|gamma| (way, gamma))).collect();
+    let work = |(way, gamma): &(&Way, f64)| {
+        let effect = effect(&bar, &wave, way, *gamma);
+        AtGamma { way: way.name, gamma: *gamma, effect }
     };
-    let scene = template.scene(&configuration).map_err(|fault| fault.to_string())?;
+    Ok(pool::all(&items, jobs, work, progress))
+}
+
+/// Makes the configuration of one γ in one way on the grid of a template.
+fn configuration(
+    template: &Template,
+    way: &Way,
+    gamma: f64,
+    cfl: f64,
+) -> Result<Configuration, Fault> {
+    let Way { method, mass, particles_per_cell, .. } = way;
+    let grid = template.grid(method, 1.0, *particles_per_cell);
+    format!(
+        "method={method} mass={mass} basis.kind=lme basis.gamma={gamma} \
+         time.integrator=newmark {grid} time.cfl={cfl}"
+    )
+    .parse()
+}
+
+fn effect(bar: &Template, wave: &Template, way: &Way, gamma: f64) -> Result<Effect, String> {
+    let words = |fault: Fault| fault.to_string();
+    let configuration_of_bar = configuration(bar, way, gamma, way.cfl).map_err(words)?;
+    let scene = bar.scene(&configuration_of_bar).map_err(words)?;
     let outcome = run(&scene, &mut |_| {}).map_err(|stopped| stopped.broken.to_string())?;
     let lines = summary::lines(&scene, &outcome, 0.0);
     let line = |name: &str| lines.iter().find(|l| l.quantity == name).map_or(f64::NAN, |l| l.value);
@@ -88,43 +138,30 @@ fn values(template: &Template, way: usize, gamma: f64) -> Result<Vec<f64>, Strin
     let cost = outcome.cost;
     let per_particle = |count: u64| count as f64 / cost.basis_evaluations as f64;
     let limit = stability::predicted(&scene, 0.0).map_err(|breakdown| breakdown.to_string())?;
-    Ok(vec![
-        line("velocity_end_rms_relative"),
-        line(&format!("{probe}_rms_relative")),
-        line("displacement_field_rms_relative"),
-        line(&format!("{probe}_peak")) / line(&format!("{probe}_peak_exact")) - 1.0,
-        variation(&stress) / variation(&exact),
-        dispersion(&configuration)?,
-        line("energy_drift_largest"),
-        per_particle(cost.particle_node_pairs),
-        per_particle(cost.exponentials),
-        scene.courant_number_of(limit),
-    ])
+    Ok(Effect {
+        velocity: line("velocity_end_rms_relative"),
+        stress: line(&format!("{probe}_rms_relative")),
+        displacement: line("displacement_field_rms_relative"),
+        overshoot: line(&format!("{probe}_peak")) / line(&format!("{probe}_peak_exact")) - 1.0,
+        total_variation: variation(&stress) / variation(&exact),
+        dispersion: dispersion(wave, way, gamma)?,
+        energy_drift: line("energy_drift_largest"),
+        pairs_per_particle: per_particle(cost.particle_node_pairs),
+        exponentials_per_particle: per_particle(cost.exponentials),
+        critical_courant: scene.courant_number_of(limit),
+    })
 }
 
-/// The relative error of the frequency of a wave that is eight cells long, small time
-/// steps: the phase of its mode after a quarter of its period, over π/2, less 1. (After
+/// Measures the relative error of the frequency of a wave that is eight cells long, with
+/// small time steps: the phase of its mode after a quarter of its period, over π/2, less 1. (After
 /// a whole period a slow wave could be taken for a fast one.)
-fn dispersion(configuration: &Configuration) -> Result<f64, String> {
-    let (cells, mode) = (32, 8);
-    let text = format!(
-        "title = 'wave'\nmethod = '{}'\nmass = '{}'\n\
-         body = {{ length = 1, density = 1, youngs_modulus = 1, poisson_ratio = 0 }}\n\
-         grid = {{ cells = {cells}, particles_per_cell = {} }}\n\
-         basis = {{ kind = 'lme', gamma = {} }}\n\
-         time = {{ integrator = 'newmark', cfl = 0.02, end = {:?} }}\n\
-         boundary = {{ left = 'fixed', right = 'fixed' }}\n\
-         vibration = {{ mode = {mode}, velocity = 1e-7 }}\n",
-        configuration.method,
-        configuration.mass,
-        configuration.particles_per_cell,
-        configuration.basis.trim_start_matches("lme-"),
-        0.5 / f64::from(mode),
-    );
-    let scene = run::parse("wave", "wave", &text, &[]).map_err(|error| error.problem.clone())?;
+fn dispersion(wave: &Template, way: &Way, gamma: f64) -> Result<f64, String> {
+    let words = |fault: Fault| fault.to_string();
+    let small_steps = configuration(wave, way, gamma, 0.02).map_err(words)?;
+    let scene = wave.scene(&small_steps).map_err(words)?;
     let outcome = run(&scene, &mut |_| {}).map_err(|stopped| stopped.broken.to_string())?;
     let column = |name: &str| outcome.particles.column(name).unwrap_or_default();
-    let k = f64::from(mode) * std::f64::consts::PI;
+    let k = 8.0 * std::f64::consts::PI;
     let (x, u, v) = (column("position"), column("displacement"), column("velocity"));
     let onto = |list: &[f64]| -> f64 {
         list.iter().zip(x.iter().zip(&u)).map(|(y, (x, u))| y * libm::sin(k * (x - u))).sum()
@@ -132,24 +169,35 @@ fn dispersion(configuration: &Configuration) -> Result<f64, String> {
     Ok(libm::atan2(onto(&u) * k, onto(&v)) / std::f64::consts::FRAC_PI_2 - 1.0)
 }
 
-/// The study as CSV.
-pub fn table(rows: &[Row]) -> Result<Vec<u8>, Fault> {
-    let line = |row: &Row| {
+/// Gives the curve of each way for the size of the number called `name`, without zeros.
+pub fn curves(rows: &[AtGamma], name: &str) -> Vec<(String, CurvePoints)> {
+    let point = |row: &AtGamma| {
+        let named = row.effect.as_ref().ok()?.named();
+        let (_, x) = named.into_iter().find(|(column, _)| *column == name)?;
+        (x != 0.0).then_some((row.gamma, x.abs()))
+    };
+    let curve = |way: &Way| {
+        let own = rows.iter().filter(|row| row.way == way.name);
+        (way.name.to_string(), own.filter_map(point).collect())
+    };
+    WAYS.iter().map(curve).collect()
+}
+
+/// Writes the study as CSV.
+pub fn table(rows: &[AtGamma]) -> Result<Vec<u8>, Fault> {
+    let names = Effect::default().named().map(|(name, _)| name);
+    let line = |row: &AtGamma| {
+        let (effect, problem) = match &row.effect {
+            Ok(effect) => (effect.named().map(|(_, x)| shortest(x)), String::new()),
+            Err(problem) => (names.map(|_| String::new()), problem.clone()),
+        };
         let mut cells = vec![row.way.to_string(), shortest(row.gamma)];
-        match &row.values {
-            Ok(list) => {
-                cells.extend(list.iter().map(|x| shortest(*x)));
-                cells.push(String::new());
-            }
-            Err(problem) => {
-                cells.extend(vec![String::new(); COLUMNS.len()]);
-                cells.push(problem.clone());
-            }
-        }
+        cells.extend(effect);
+        cells.push(problem);
         cells
     };
     let mut columns = vec!["way", "gamma"];
-    columns.extend(COLUMNS);
+    columns.extend(names);
     columns.push("problem");
     csv(&columns, rows.iter().map(line))
 }

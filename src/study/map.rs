@@ -1,137 +1,134 @@
-//! The map of stability: every basis, scheme, mass, number of particles and offset,
-//! predicted and measured.
+//! The map of stability has the largest stable time step of every basis, scheme, mass,
+//! number of particles and offset, predicted and measured.
 
-use super::configuration::{Configuration, Template};
+use super::configuration::{Configuration, KEYS, Template};
 use super::pool;
+use crate::method::breakdown::Breakdown;
 use crate::run::stability;
 use crate::run::table::{csv, shortest};
 use crate::scene::fault::Fault;
 
-/// Steps of a run that is asked whether it grows, and the width of the answer.
+/// A run that is asked whether it grows takes as many steps, and the limit that it brackets
+/// is known to this width.
 const STEPS: usize = 1500;
 const TOLERANCE: f64 = 2e-3;
 
-pub const BASES: [&str; 6] = ["linear", "ugimp", "bspline", "lme-0.8", "lme-1.8", "lme-4"];
-pub const INTEGRATORS: [&str; 6] = [
-    "newmark",
-    "forward-euler-first",
-    "forward-euler-last",
-    "corrected-euler",
-    "generalized-alpha-0.5",
-    "generalized-alpha-0.8",
+const BASES: [&str; 6] = [
+    "basis.kind=linear",
+    "basis.kind=ugimp",
+    "basis.kind=bspline",
+    "basis.kind=lme basis.gamma=0.8",
+    "basis.kind=lme basis.gamma=1.8",
+    "basis.kind=lme basis.gamma=4",
 ];
 
-/// One combination and its limit as c Δt / h.
+/// Every integrator stands here with what it needs; Newmark's is the first.
+pub const INTEGRATORS: [&str; 6] = [
+    "time.integrator=newmark",
+    "time.integrator=forward-euler time.stress_update=first",
+    "time.integrator=forward-euler time.stress_update=last",
+    "time.integrator=corrected-euler",
+    "time.integrator=generalized-alpha time.rho_b=0.5",
+    "time.integrator=generalized-alpha time.rho_b=0.8",
+];
+
+/// A combination is what the map asks the limit of.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct Combination {
     pub configuration: Configuration,
+    pub particles_per_cell: usize,
     /// Of the particles, in units of their distance.
     pub offset: f64,
-    /// Predicted and measured, or why there is none.
-    pub limit: Result<(f64, f64), String>,
 }
 
-/// All combinations that a map has.
-pub fn combinations(dimension: usize) -> Vec<(Configuration, f64)> {
+/// A limit is the largest stable c Δt / h.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    pub predicted: f64,
+    pub measured: f64,
+}
+
+/// A place on the map is a combination with its limit, or with a reason why there is none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mapped {
+    pub combination: Combination,
+    pub limit: Result<Limit, String>,
+}
+
+/// Lists all combinations that a map of the scene has.
+pub fn combinations(template: &Template) -> Result<Vec<Combination>, Fault> {
     let mut all = Vec::new();
-    for method in ["mpm", "otm"] {
-        for basis in BASES {
-            if method == "otm"
-                && !(basis.starts_with("lme") || (basis == "linear" && dimension == 1))
-            {
-                continue;
-            }
-            for integrator in INTEGRATORS {
-                for mass in ["lumped", "consistent"] {
-                    if method == "otm" && (integrator != "newmark" || mass != "lumped") {
-                        continue;
-                    }
-                    for particles_per_cell in [1, 2, 4] {
-                        for offset in [0.0, 0.25] {
-                            if method == "otm" && offset > 0.0 {
-                                continue; // its points are where its nodes want them
-                            }
-                            let configuration = Configuration {
-                                method: method.into(),
-                                mass: mass.into(),
-                                basis: basis.into(),
-                                integrator: integrator.into(),
-                                refinement: 1.0,
-                                particles_per_cell,
-                                cfl: 0.5,
-                            };
-                            all.push((configuration, offset));
-                        }
+    let mut add = |method: &str, parts: &str, particles_per_cell: usize, offset: f64| {
+        let grid = template.grid(method, 1.0, particles_per_cell);
+        let configuration = format!("method={method} {parts} {grid} time.cfl=0.5").parse()?;
+        all.push(Combination { configuration, particles_per_cell, offset });
+        Ok::<(), Fault>(())
+    };
+    for basis in BASES {
+        for integrator in INTEGRATORS {
+            for mass in ["mass=lumped", "mass=consistent"] {
+                for per_cell in [1, 2, 4] {
+                    for offset in [0.0, 0.25] {
+                        add("mpm", &format!("{mass} {basis} {integrator}"), per_cell, offset)?;
                     }
                 }
             }
         }
     }
-    all
-}
-
-/// The limit of one combination.
-fn row(template: &Template, (configuration, offset): &(Configuration, f64)) -> Row {
-    let limit = || -> Result<(f64, f64), String> {
-        let scene = template.scene(configuration).map_err(|fault| fault.to_string())?;
-        let name = |breakdown: crate::method::breakdown::Breakdown| breakdown.to_string();
-        let predicted = stability::predicted(&scene, *offset).map_err(name)?;
-        if !predicted.is_finite() {
-            return Err("nothing strains this body: there is no limit".to_string());
-        }
-        let measured = stability::measured(&scene, *offset, predicted, STEPS, TOLERANCE);
-        let measured = measured.map_err(name)?;
-        Ok((scene.courant_number_of(predicted), scene.courant_number_of(measured)))
+    // The points of OTM are where its nodes want them, and its nodes are scattered.
+    let on_nodes = |basis: &&str| match template.scene.dimension() {
+        1 => basis.contains("lme") || basis.contains("linear"),
+        _ => basis.contains("lme"),
     };
-    Row { configuration: configuration.clone(), offset: *offset, limit: limit() }
+    for basis in BASES.iter().filter(|basis| on_nodes(basis)) {
+        for per_cell in [1, 2, 4] {
+            add("otm", &format!("mass=lumped {basis} {}", INTEGRATORS[0]), per_cell, 0.0)?;
+        }
+    }
+    Ok(all)
 }
 
-/// The whole map; `progress` hears of every row.
+/// Predicts and measures the limit of one combination.
+fn limit(
+    template: &Template,
+    Combination { configuration, offset, .. }: &Combination,
+) -> Result<Limit, String> {
+    let scene = template.scene(configuration).map_err(|fault| fault.to_string())?;
+    let words = |breakdown: Breakdown| breakdown.to_string();
+    let predicted = stability::predicted(&scene, *offset).map_err(words)?;
+    if !predicted.is_finite() {
+        return Err("nothing strains this body: there is no limit".to_string());
+    }
+    let measured =
+        stability::measured(&scene, *offset, predicted, STEPS, TOLERANCE).map_err(words)?;
+    let [predicted, measured] = [predicted, measured].map(|dt| scene.courant_number_of(dt));
+    Ok(Limit { predicted, measured })
+}
+
+/// Finds the limits of some combinations; `progress` hears of every one.
 pub fn map(
     template: &Template,
-    dimension: usize,
+    combinations: &[Combination],
     jobs: usize,
     progress: &mut dyn FnMut(),
-) -> Vec<Row> {
-    let all = combinations(dimension);
-    let mut rows: Vec<Option<Row>> = vec![None; all.len()];
-    let never: Result<(), std::convert::Infallible> = pool::run(
-        &all,
-        jobs,
-        |one| row(template, one),
-        |n, row| {
-            rows[n] = Some(row);
-            progress();
-            Ok(())
-        },
-    );
-    let Ok(()) = never;
-    rows.into_iter().flatten().collect()
+) -> Vec<Mapped> {
+    let work = |one: &Combination| Mapped { combination: one.clone(), limit: limit(template, one) };
+    pool::all(combinations, jobs, work, progress)
 }
 
-/// `method,mass,basis,integrator,particles_per_cell,offset,predicted,measured,problem`.
-pub fn table(rows: &[Row]) -> Result<Vec<u8>, Fault> {
-    let line = |row: &Row| {
-        let c = &row.configuration;
-        let mut cells =
-            vec![c.method.clone(), c.mass.clone(), c.basis.clone(), c.integrator.clone()];
-        cells.extend([c.particles_per_cell.to_string(), shortest(row.offset)]);
-        cells.extend(match &row.limit {
-            Ok((predicted, measured)) => [shortest(*predicted), shortest(*measured), String::new()],
+/// Writes every combination key by key, then `offset,predicted,measured,problem`.
+pub fn table(rows: &[Mapped]) -> Result<Vec<u8>, Fault> {
+    let line = |Mapped { combination, limit }: &Mapped| {
+        let value = |key| combination.configuration.value(key).to_string();
+        let mut cells = KEYS.map(value).to_vec();
+        cells.push(shortest(combination.offset));
+        cells.extend(match limit {
+            Ok(limit) => [shortest(limit.predicted), shortest(limit.measured), String::new()],
             Err(problem) => [String::new(), String::new(), problem.clone()],
         });
         cells
     };
-    let columns = [
-        "method",
-        "mass",
-        "basis",
-        "integrator",
-        "particles_per_cell",
-        "offset",
-        "predicted",
-        "measured",
-        "problem",
-    ];
+    let mut columns = KEYS.to_vec();
+    columns.extend(["offset", "predicted", "measured", "problem"]);
     csv(&columns, rows.iter().map(line))
 }

@@ -2,6 +2,9 @@
 
 pub mod configuration;
 pub mod gamma;
+pub mod log;
 pub mod map;
+pub mod measured;
 pub mod pool;
+pub mod ranking;
 pub mod trade;

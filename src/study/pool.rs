@@ -1,9 +1,9 @@
-//! Independent pieces of work on several threads, each piece on one.
+//! The pool shares independent pieces of work among threads, each piece on one.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 
-/// `work` on every item, by `jobs` threads; `done` hears of each result as it comes,
+/// Does `work` on every item, by `jobs` threads; `done` hears of each result as it comes,
 /// with its number. Results do not depend on the number of threads.
 ///
 /// Errors: the first that `done` returns; what is at work is finished, the rest left.
@@ -40,4 +40,23 @@ pub fn run<T: Sync, R: Send, E>(
         }
         outcome
     })
+}
+
+/// Does `work` on every item, by `jobs` threads, and gives the results in the order of the
+/// items; `progress` hears of every one that is done.
+pub fn all<T: Sync, R: Send>(
+    items: &[T],
+    jobs: usize,
+    work: impl Fn(&T) -> R + Sync,
+    progress: &mut dyn FnMut(),
+) -> Vec<R> {
+    let mut results: Vec<(usize, R)> = Vec::new();
+    let done: Result<(), std::convert::Infallible> = run(items, jobs, work, |n, result| {
+        results.push((n, result));
+        progress();
+        Ok(())
+    });
+    let Ok(()) = done;
+    results.sort_by_key(|(n, _)| *n);
+    results.into_iter().map(|(_, result)| result).collect()
 }

@@ -1,0 +1,176 @@
+//! The log of a study has a line for every timed run, so that a study which was
+//! interrupted goes on where it stopped.
+
+use super::configuration::{Configuration, Template};
+use super::measured::Measured;
+use super::pool;
+use crate::run::table::{csv, shortest};
+use crate::scene::fault::Fault;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::time::Instant;
+
+/// Each configuration is timed as often.
+pub const PASSES: usize = 3;
+
+/// A timed run is one pass of a configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimedRun {
+    pub configuration: Configuration,
+    /// From 1 to [`PASSES`].
+    pub pass: usize,
+    /// What came out, or why nothing did.
+    pub measured: Result<Measured, String>,
+    /// (s).
+    pub wall_time: f64,
+}
+
+/// Names the columns of a run's result: why there is none, or its numbers.
+pub fn result_columns() -> Vec<&'static str> {
+    let numbers = Measured::default().named();
+    std::iter::once("problem").chain(numbers.into_iter().map(|(name, _)| name)).collect()
+}
+
+/// Fills the cells of [`result_columns`].
+pub fn result_cells(measured: &Result<Measured, String>) -> Vec<String> {
+    match measured {
+        Ok(measured) => {
+            let numbers = measured.named().into_iter().map(|(_, x)| shortest(x));
+            std::iter::once(String::new()).chain(numbers).collect()
+        }
+        Err(problem) => {
+            let mut cells = vec![String::new(); result_columns().len()];
+            cells[0] = problem.clone();
+            cells
+        }
+    }
+}
+
+/// Names the columns of the log; `scene` tells one study from another.
+fn columns() -> Vec<&'static str> {
+    let mut columns = vec!["scene", "configuration", "pass"];
+    columns.extend(result_columns());
+    columns.push("wall_time");
+    columns
+}
+
+impl TimedRun {
+    /// Runs one configuration once.
+    pub fn of(template: &Template, configuration: &Configuration, pass: usize) -> Self {
+        let start = Instant::now();
+        let scene = template.scene(configuration).map_err(|fault| fault.to_string());
+        let measured = scene.and_then(|scene| Measured::of(&scene));
+        let wall_time = start.elapsed().as_secs_f64();
+        TimedRun { configuration: configuration.clone(), pass, measured, wall_time }
+    }
+
+    fn cells(&self, scene: &str) -> Vec<String> {
+        let configuration = self.configuration.to_string();
+        let mut cells = vec![scene.to_string(), configuration, self.pass.to_string()];
+        cells.extend(result_cells(&self.measured));
+        cells.push(shortest(self.wall_time));
+        cells
+    }
+
+    /// Reads the run of a line, if the line is whole.
+    fn read(record: &csv::StringRecord) -> Option<Self> {
+        let cell = |name: &str| record.get(columns().iter().position(|column| *column == name)?);
+        let number = |name: &str| cell(name)?.parse().ok();
+        Some(TimedRun {
+            configuration: cell("configuration")?.parse().ok()?,
+            pass: cell("pass")?.parse().ok()?,
+            measured: match cell("problem")? {
+                "" => Ok(Measured::read(number)?),
+                problem => Err(problem.to_string()),
+            },
+            wall_time: number("wall_time")?,
+        })
+    }
+}
+
+/// Writes the log of some runs of the scene with this digest.
+pub fn csv_of<'a>(
+    scene: &str,
+    runs: impl IntoIterator<Item = &'a TimedRun>,
+) -> Result<Vec<u8>, Fault> {
+    csv(&columns(), runs.into_iter().map(|run| run.cells(scene)))
+}
+
+/// Reads the runs of a log that belongs to the scene with this digest; a last line that
+/// an interruption has cut short is left out.
+///
+/// Errors: [`Fault::Read`]; [`Fault::Argument`] for another study's log.
+pub fn read(path: &Path, scene: &str) -> Result<Vec<TimedRun>, Fault> {
+    let fault = |source| Fault::Read { path: path.to_path_buf(), source };
+    let refuse = |what: &str, allowed| Fault::Argument {
+        argument: "log",
+        problem: format!("{} {what}", path.display()),
+        allowed,
+    };
+    let text = fs::read_to_string(path).map_err(fault)?;
+    let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+    if whole.is_empty() {
+        return Ok(Vec::new()); // cut short before its first line was whole
+    }
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(whole.as_bytes());
+    let header = reader.headers().map_err(|error| fault(error.into()))?.clone();
+    if header.iter().ne(columns()) {
+        return Err(refuse("has other columns", "a log of `lme-mpm trade`"));
+    }
+    let mut runs = Vec::new();
+    for record in reader.records().map_while(Result::ok) {
+        if record.len() != header.len() {
+            continue;
+        }
+        if &record[0] != scene {
+            let allowed = "a log of this scene, or another --out";
+            return Err(refuse("belongs to another scene", allowed));
+        }
+        runs.extend(TimedRun::read(&record));
+    }
+    Ok(runs)
+}
+
+/// Completes the runs of a grid: takes those that the log at `path` has and makes the
+/// others, each written there as it ends. Passes are interleaved: all configurations once, then
+/// all again. `progress` hears how many of how many are done.
+///
+/// Errors: those of [`read`]; [`Fault::Write`].
+pub fn complete(
+    template: &Template,
+    grid: &[Configuration],
+    path: &Path,
+    jobs: usize,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Vec<TimedRun>, Fault> {
+    let scene = template.digest()?;
+    let fault = |source| Fault::Write { path: path.to_path_buf(), source };
+    let mut known = match path.exists() {
+        true => read(path, &scene)?,
+        false => Vec::new(),
+    };
+    // The log is written anew, so that a line cut short does not stay.
+    let new = path.with_extension("csv.part");
+    let bytes = csv_of(&scene, &known)?;
+    fs::write(&new, bytes).and_then(|()| fs::rename(&new, path)).map_err(fault)?;
+    let mut log = fs::OpenOptions::new().append(true).open(path).map_err(fault)?;
+    let is_known = |pass: usize, configuration: &Configuration| {
+        known.iter().any(|run| run.pass == pass && run.configuration == *configuration)
+    };
+    let all = (1..=PASSES).flat_map(|pass| grid.iter().map(move |one| (one, pass)));
+    let open: Vec<_> = all.filter(|(one, pass)| !is_known(*pass, one)).collect();
+    let mut done = 0;
+    let work = |(one, pass): &(&Configuration, usize)| TimedRun::of(template, one, *pass);
+    pool::run(&open, jobs, work, |_, run| {
+        let bytes = csv_of(&scene, [&run])?;
+        // The header line stands there already.
+        let start = bytes.iter().position(|b| *b == b'\n').map_or(0, |at| at + 1);
+        log.write_all(&bytes[start..]).map_err(fault)?;
+        known.push(run);
+        done += 1;
+        progress(done, open.len());
+        Ok::<(), Fault>(())
+    })?;
+    Ok(known)
+}
