@@ -297,3 +297,77 @@ fn picture(rooms: &[Room]) -> String {
          </defs>\n<rect width=\"840\" height=\"{y}\" fill=\"#ffffff\"/>\n{body}</svg>\n"
     )
 }
+
+/// One name, one thing: no two types of the program are called the same.
+#[test]
+fn house_names_mean_one_thing() {
+    let mut known: BTreeMap<String, String> = BTreeMap::new();
+    for (module, code) in modules() {
+        for line in code.lines() {
+            let line = line.trim_start_matches("pub ").trim_start_matches("pub(super) ");
+            let kinds = ["struct ", "enum ", "trait ", "type "];
+            if let Some(rest) = kinds.iter().find_map(|kind| line.strip_prefix(kind)) {
+                let end = |c: char| !(c.is_alphanumeric() || c == '_');
+                let name = rest[..rest.find(end).unwrap_or(rest.len())].to_string();
+                let before = known.insert(name.clone(), module.clone());
+                assert_eq!(before, None, "`{name}` of `{module}` exists twice");
+            }
+        }
+    }
+    assert!(known.len() > 50, "{}", known.len());
+}
+
+/// Functions have about 40 lines at most, or say why they have more, and never more than
+/// six parameters.
+#[test]
+fn house_functions_are_short() {
+    let mut count = 0;
+    for entry in sources() {
+        let text = fs::read_to_string(&entry).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        for (n, line) in lines.iter().enumerate() {
+            let code = line.trim_start();
+            let indent = &line[..line.len() - code.len()];
+            let start = ["fn ", "pub fn ", "pub(super) fn ", "const fn ", "pub const fn "];
+            if !start.iter().any(|start| code.starts_with(start)) {
+                continue;
+            }
+            let end = format!("{indent}}}");
+            let length = lines[n..].iter().position(|line| *line == end).map_or(1, |at| at + 1);
+            let comment = lines[..n].iter().rev().map(|line| line.trim_start());
+            let comment: Vec<&str> =
+                comment.take_while(|line| line.starts_with(['/', '#'])).collect();
+            let comment =
+                comment.into_iter().rev().collect::<Vec<_>>().join(" ").replace("/// ", "");
+            let place = format!("{}, line {}", entry.display(), n + 1);
+            let reason = comment.contains("why this function is long");
+            assert!(length <= 44 || reason, "{place}: {length} lines, and no word of why");
+            let head: String =
+                lines[n..].iter().take(14).map(|line| format!("{}\n", line.trim())).collect();
+            let head = head.split(" {\n").next().unwrap();
+            let parameters = match head.contains("(\n") {
+                true => head.lines().filter(|line| line.ends_with(',')).count(),
+                false => head.matches(": ").count(),
+            };
+            assert!(parameters <= 6 + usize::from(head.contains("self")), "{place}: {parameters}");
+            count += 1;
+        }
+    }
+    assert!(count > 300, "{count}");
+}
+
+/// All files of `src/`.
+fn sources() -> Vec<std::path::PathBuf> {
+    fn below(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
+        for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+            match entry.file_type().unwrap().is_dir() {
+                true => below(&entry.path(), found),
+                false => found.push(entry.path()),
+            }
+        }
+    }
+    let mut found = Vec::new();
+    below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut found);
+    found.sort();
+    found
+}

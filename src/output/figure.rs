@@ -170,9 +170,7 @@ pub fn fronts(bar: &Bar, transits: f64) -> String {
 /// Draws errors against the number of cells, both on logarithmic axes; each list of
 /// `(cells, error)` has its name.
 pub fn convergence(title: &str, lists: &[(&str, CurvePoints)]) -> String {
-    let owned: Vec<(String, CurvePoints)> =
-        lists.iter().map(|(name, points)| (name.to_string(), points.clone())).collect();
-    log_curves(title, "cells [–]", "relative error [–]", &owned)
+    log_curves(title, "cells [–]", "relative error [–]", lists)
 }
 
 /// Draws curves with names, both axes logarithmic.
@@ -180,9 +178,9 @@ pub fn log_curves(
     title: &str,
     x_label: &str,
     y_label: &str,
-    lists: &[(String, CurvePoints)],
+    lists: &[(impl AsRef<str>, CurvePoints)],
 ) -> String {
-    named_curves(title, x_label, y_label, lists, true)
+    named_curves(lists, &Axes::new(title, x_label, y_label, true))
 }
 
 /// Draws curves with names on plain axes.
@@ -190,26 +188,19 @@ pub fn curves(
     title: &str,
     x_label: &str,
     y_label: &str,
-    lists: &[(String, CurvePoints)],
+    lists: &[(impl AsRef<str>, CurvePoints)],
 ) -> String {
-    named_curves(title, x_label, y_label, lists, false)
+    named_curves(lists, &Axes::new(title, x_label, y_label, false))
 }
 
-fn named_curves(
-    title: &str,
-    x_label: &str,
-    y_label: &str,
-    lists: &[(String, CurvePoints)],
-    log: bool,
-) -> String {
-    let curve = |(n, (name, points)): (usize, &(String, CurvePoints))| Curve {
+fn named_curves(lists: &[(impl AsRef<str>, CurvePoints)], axes: &Axes) -> String {
+    let curves = lists.iter().enumerate().map(|(n, (name, points))| Curve {
         points: points.clone(),
         colour: COLOURS[n % COLOURS.len()],
         width: 2.0,
-        legend: name.clone(),
-    };
-    let axes = Axes::new(title, x_label, y_label, log);
-    draw(lists.iter().enumerate().map(curve).collect(), &axes)
+        legend: name.as_ref().to_string(),
+    });
+    draw(curves.collect(), axes)
 }
 
 /// An effort is a point of a work-precision diagram: what it took, its relative error, and

@@ -14,25 +14,21 @@ use std::path::Path;
 /// The values of γ.
 pub const GAMMAS: [f64; 12] = [0.3, 0.5, 0.8, 1.0, 1.4, 1.8, 2.5, 4.0, 6.0, 10.0, 20.0, 50.0];
 
-/// A way is what is varied beside γ.
+/// A way is what is varied beside γ: some `KEY=VALUE` and c Δt / h.
 pub struct Way {
     pub name: &'static str,
-    method: &'static str,
-    mass: &'static str,
-    particles_per_cell: usize,
+    sets: &'static str,
     cfl: f64,
 }
 
 pub const WAYS: [Way; 3] = [
-    Way { name: "mpm lumped", method: "mpm", mass: "lumped", particles_per_cell: 2, cfl: 0.5 },
+    Way { name: "mpm lumped", sets: "method=mpm mass=lumped grid.particles_per_cell=2", cfl: 0.5 },
     Way {
         name: "mpm consistent",
-        method: "mpm",
-        mass: "consistent",
-        particles_per_cell: 2,
+        sets: "method=mpm mass=consistent grid.particles_per_cell=2",
         cfl: 0.2,
     },
-    Way { name: "otm", method: "otm", mass: "lumped", particles_per_cell: 1, cfl: 0.5 },
+    Way { name: "otm", sets: "method=otm mass=lumped grid.particles_per_cell=1", cfl: 0.5 },
 ];
 
 /// This bar has length, modulus and density 1, and vibrates in a mode of four waves.
@@ -107,26 +103,16 @@ pub fn study(jobs: usize, progress: &mut dyn FnMut()) -> Result<Vec<AtGamma>, Fa
     Ok(pool::all(&items, jobs, work, progress))
 }
 
-/// Makes the configuration of one γ in one way on the grid of a template.
-fn configuration(
-    template: &Template,
-    way: &Way,
-    gamma: f64,
-    cfl: f64,
-) -> Result<Configuration, Fault> {
-    let Way { method, mass, particles_per_cell, .. } = way;
-    let grid = template.grid(method, 1.0, *particles_per_cell);
-    format!(
-        "method={method} mass={mass} basis.kind=lme basis.gamma={gamma} \
-         time.integrator=newmark {grid} time.cfl={cfl}"
-    )
-    .parse()
+/// Makes the configuration of one γ in one way.
+fn configuration(way: &Way, gamma: f64, cells: usize, cfl: f64) -> Result<Configuration, Fault> {
+    let parts = format!("basis.kind=lme basis.gamma={gamma} time.integrator=newmark");
+    format!("{} {parts} grid.cells={cells} time.cfl={cfl}", way.sets).parse()
 }
 
 fn effect(bar: &Template, wave: &Template, way: &Way, gamma: f64) -> Result<Effect, String> {
     let words = |fault: Fault| fault.to_string();
-    let configuration_of_bar = configuration(bar, way, gamma, way.cfl).map_err(words)?;
-    let scene = bar.scene(&configuration_of_bar).map_err(words)?;
+    let one = configuration(way, gamma, 40, way.cfl).map_err(words)?;
+    let scene = bar.scene(&one).map_err(words)?;
     let outcome = run(&scene, &mut |_| {}).map_err(|stopped| stopped.broken.to_string())?;
     let lines = summary::lines(&scene, &outcome, 0.0);
     let line = |name: &str| lines.iter().find(|l| l.quantity == name).map_or(f64::NAN, |l| l.value);
@@ -157,8 +143,8 @@ fn effect(bar: &Template, wave: &Template, way: &Way, gamma: f64) -> Result<Effe
 /// a whole period a slow wave could be taken for a fast one.)
 fn dispersion(wave: &Template, way: &Way, gamma: f64) -> Result<f64, String> {
     let words = |fault: Fault| fault.to_string();
-    let small_steps = configuration(wave, way, gamma, 0.02).map_err(words)?;
-    let scene = wave.scene(&small_steps).map_err(words)?;
+    let one = configuration(way, gamma, 32, 0.02).map_err(words)?;
+    let scene = wave.scene(&one).map_err(words)?;
     let outcome = run(&scene, &mut |_| {}).map_err(|stopped| stopped.broken.to_string())?;
     let column = |name: &str| outcome.particles.column(name).unwrap_or_default();
     let k = 8.0 * std::f64::consts::PI;
