@@ -14,8 +14,7 @@ const USUAL: Tolerance = Tolerance { relative: 1e-9, absolute: 1e-12 };
 fn trace_is_the_run() {
     fn same<const D: usize>(scene: &Scene) {
         let (entries, traced) = trace_in::<D>(scene, 10).unwrap();
-        let model = lme_mpm::setup::model::<D>(scene);
-        let mut state = lme_mpm::setup::initial_state(&model, scene);
+        let (model, mut state) = at_start::<D>(scene);
         march(&model, &mut state, 10);
         assert_eq!(state.particle, traced.particle);
         assert_eq!(state.node, traced.node);
@@ -25,16 +24,17 @@ fn trace_is_the_run() {
             assert_eq!(entry.value, state.particle.x[entry.index][entry.component]);
         }
     }
-    for (_, sets) in SCHEMES {
-        for mass in ["mass=lumped", "mass=consistent"] {
-            let small = [mass, "grid.cells=6", "time.cfl=0.2"];
-            same::<1>(&dyka(&[sets, &small].concat()));
-            same::<1>(&dyka(&[sets, &small, &["basis.kind=lme", "basis.gamma=1.8"]].concat()));
+    for scheme in SCHEMES {
+        for mass in MASSES {
+            for basis in [LINEAR, LME_MIDDLE] {
+                let small = ["grid.cells=6", "time.cfl=0.2"];
+                same::<1>(&dyka(&[scheme.sets, mass.sets, basis.sets, &small].concat()));
+            }
         }
         let loads = ["body_force.acceleration=5", "traction.right=1e6", "grid.cells=6"];
-        same::<1>(&dyka(&[sets, &loads].concat()));
+        same::<1>(&dyka(&[scheme.sets, &loads].concat()));
     }
-    same::<1>(&dyka(&["method=otm", "basis.kind=lme", "basis.gamma=4", "grid.cells=6"]));
+    same::<1>(&dyka(&[LME_NARROW.sets, &["method=otm", "grid.cells=6"]].concat()));
     same::<2>(&scene(DISCS, &["grid.cells=[8,8]"]));
 }
 
@@ -55,10 +55,7 @@ fn trace_numbers_read_back() {
         assert_eq!(number(&format!("{x:?}")), Some(x));
     }
     assert_eq!((hex(1.5).as_str(), hex(-0.1).as_str()), ("0x1.8p+0", "-0x1.999999999999ap-4"));
-    assert_eq!(
-        (number("0x"), number("0x1.8"), number("abc"), number("")),
-        (None, None, None, None)
-    );
+    assert_eq!(["0x", "0x1.8", "abc", ""].map(number), [None; 4]);
     assert_eq!((ulps(1.0, 1.0 + f64::EPSILON), ulps(-0.0, 0.0), ulps(5e-324, -5e-324)), (1, 0, 2));
 }
 
@@ -98,22 +95,13 @@ fn check_finds_the_first_difference() {
     }
     // Within the tolerance nothing is found.
     let loose = Tolerance { relative: 1e-5, ..USUAL };
-    assert_eq!(
-        compare(&all, &wrong.clone().into(), loose, false)
-            .unwrap()
-            .divergence
-            .unwrap()
-            .reference
-            .symbol,
-        "m_I"
-    );
+    let report = compare(&all, &wrong.clone().into(), loose, false).unwrap();
+    assert_eq!(report.divergence.unwrap().reference.symbol, "m_I");
     // Also in a reference whose lines are in another order.
     let mut reversed = all.clone();
     reversed.reverse();
-    assert_eq!(
-        compare(&reversed, &wrong.into(), USUAL, false).unwrap().divergence,
-        Some(divergence)
-    );
+    let report = compare(&reversed, &wrong.into(), USUAL, false).unwrap();
+    assert_eq!(report.divergence, Some(divergence));
     // What cannot be compared.
     let mut more = all.clone();
     more[0].index = 99;

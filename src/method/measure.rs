@@ -29,12 +29,6 @@ pub struct Order {
     pub half_width: f64,
 }
 
-impl Order {
-    pub fn contains(&self, order: f64) -> bool {
-        (self.slope - order).abs() <= self.half_width
-    }
-}
-
 impl std::fmt::Display for Order {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{:.4} ± {:.4}", self.slope, self.half_width)

@@ -1,7 +1,14 @@
-//! What several tests share: scenes with changes, runs, tables, and orders.
+//! What several tests share: runs, tables of shape functions, errors and orders, snapshots.
 
+mod cases;
 pub mod kit;
 pub mod program;
+mod reference;
+mod scenes;
+
+pub use cases::*;
+pub use reference::*;
+pub use scenes::*;
 
 use lme_mpm::method::basis::scattered::{Places, fill_from_nodes};
 use lme_mpm::method::basis::{Basis, Scratch, fill_from_grid};
@@ -9,47 +16,119 @@ use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::method::continuum::shape::Shape;
 use lme_mpm::method::cost::Cost;
 use lme_mpm::method::grid::Grid;
-use lme_mpm::method::measure::observed_order;
+use lme_mpm::method::measure::{Order, observed_order};
 use lme_mpm::method::model::{Model, State};
 use lme_mpm::method::time;
-use lme_mpm::run::{Outcome, run};
-use lme_mpm::scene::{DYKA, Scene};
+use lme_mpm::output::summary;
+use lme_mpm::run::table::Table;
+use lme_mpm::run::{Outcome, Stopped, run};
+use lme_mpm::scene::Scene;
+use lme_mpm::setup;
 use nalgebra::SVector;
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};
-
-pub const FREE_FLIGHT: &str = include_str!("../../data/scenes/free-flight.toml");
-pub const VIBRATION: &str = include_str!("../../data/scenes/vibration.toml");
-pub const GRAVITY: &str = include_str!("../../data/scenes/gravity.toml");
-pub const TRACTION: &str = include_str!("../../data/scenes/traction.toml");
-pub const MANUFACTURED: &str = include_str!("../../data/scenes/manufactured.toml");
-pub const DYKA_OTM: &str = include_str!("../../data/scenes/dyka-otm.toml");
-pub const DISCS: &str = include_str!("../../data/scenes/colliding-discs.toml");
-
-/// L/c of the Dyka bar [s], from c = √(E/ρ).
-pub fn transit() -> f64 {
-    0.1333 / (200e9_f64 / 7833.0).sqrt()
-}
-
-/// A scene from `text` with the changes `KEY=VALUE`.
-pub fn scene(text: &str, sets: &[&str]) -> Scene {
-    let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
-    lme_mpm::run::parse("test", "test.toml", text, &sets).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// The Dyka bar with the changes `KEY=VALUE`.
-pub fn dyka(sets: &[&str]) -> Scene {
-    scene(DYKA, sets)
-}
 
 /// Runs a scene to its end.
 pub fn finished(scene: &Scene) -> Outcome {
     run(scene, &mut |_| {}).unwrap_or_else(|stopped| panic!("{}", stopped.broken))
 }
 
+/// Runs a scene; a result must be free of NaN, a breakdown must have a name and a
+/// history without NaN.
+pub fn outcome(scene: &Scene) -> Result<Outcome, Box<Stopped>> {
+    let result = run(scene, &mut |_| {});
+    let (history, particles) = match &result {
+        Ok(outcome) => (&outcome.history, Some(&outcome.particles)),
+        Err(stopped) => {
+            assert!(stopped.broken.breakdown.to_string().len() > 30);
+            (&stopped.history, None)
+        }
+    };
+    let tables = std::iter::once(history).chain(particles);
+    for table in tables {
+        assert!(table.rows().all(|row| row.iter().all(|x| x.is_finite())), "NaN in a table");
+    }
+    result
+}
+
 /// One line of a run's summary.
 pub fn value(scene: &Scene, outcome: &Outcome, quantity: &str) -> f64 {
-    let lines = lme_mpm::output::summary::lines(scene, outcome, 0.0);
+    let lines = summary::lines(scene, outcome, 0.0);
     lines.iter().find(|line| line.quantity == quantity).unwrap().value
+}
+
+/// A column of a table, which has it.
+pub fn column(table: &Table, name: &str) -> Vec<f64> {
+    table.column(name).unwrap_or_else(|| panic!("no column `{name}`"))
+}
+
+/// One of a kind for each of v, σ and u.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Each<T> {
+    pub v: T,
+    pub sigma: T,
+    pub u: T,
+}
+
+/// The relative errors that the bar is judged by: v at L, σ at 3L/4 and the field of u.
+pub fn bar_errors(scene: &Scene, outcome: &Outcome) -> Each<f64> {
+    let of = |place: &str| value(scene, outcome, &format!("{place}_rms_relative"));
+    Each { v: of("velocity_end"), sigma: of("stress_three_quarter"), u: of("displacement_field") }
+}
+
+/// The relative errors of the fields of v, σ and u at the end of a run.
+pub fn field_errors(scene: &Scene, outcome: &Outcome) -> Each<f64> {
+    let of = |field: &str| value(scene, outcome, &format!("{field}_field_rms_relative"));
+    Each { v: of("velocity"), sigma: of("stress"), u: of("displacement") }
+}
+
+/// The observed order of each error in `h`, one entry of `errors` to one of `h`.
+pub fn orders(h: &[f64], errors: &[Each<f64>]) -> Each<Order> {
+    let of = |pick: fn(&Each<f64>) -> f64| {
+        observed_order(h, &errors.iter().map(pick).collect::<Vec<_>>())
+    };
+    Each { v: of(|error| error.v), sigma: of(|error| error.sigma), u: of(|error| error.u) }
+}
+
+/// Whether theory's order lies in the 95% interval of the observed one.
+pub fn agrees(observed: &Order, theory: f64) -> bool {
+    (observed.slope - theory).abs() <= observed.half_width
+}
+
+/// The largest absolute value; not a number if one of them is none.
+pub fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
+    let larger = |a: f64, b: f64| if a.is_nan() || b.abs() <= a { a } else { b.abs() };
+    numbers.into_iter().fold(0.0, larger)
+}
+
+/// The largest distance between the numbers of two lists, which are as long.
+pub fn apart(one: &[f64], other: &[f64]) -> f64 {
+    assert_eq!(one.len(), other.len());
+    largest(one.iter().zip(other).map(|(a, b)| a - b))
+}
+
+/// Kinetic and strain energy together, row by row of a history (J).
+pub fn total_energy(history: &Table) -> Vec<f64> {
+    let (kinetic, strain) = (column(history, "kinetic_energy"), column(history, "strain_energy"));
+    kinetic.iter().zip(&strain).map(|(a, b)| a + b).collect()
+}
+
+/// The mean over the first tenth of a list and over the last.
+pub fn means_of_tenths(list: &[f64]) -> (f64, f64) {
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+    let tenth = list.len() / 10;
+    (mean(&list[..tenth]), mean(&list[list.len() - tenth..]))
+}
+
+/// Nodes that a particle sees in the mean.
+pub fn pairs_per_particle(cost: &Cost) -> f64 {
+    cost.particle_node_pairs as f64 / cost.basis_evaluations as f64
+}
+
+/// A scene's model and its state at t = 0, which has not been started.
+pub fn at_start<const D: usize>(scene: &Scene) -> (Model<D>, State<D>) {
+    let model = setup::model::<D>(scene);
+    let state = setup::initial_state(&model, scene);
+    (model, state)
 }
 
 /// Takes `steps` steps of `model` from `state`, which has not been started.
@@ -151,64 +230,8 @@ pub fn digest(column: &[f64]) -> u64 {
     })
 }
 
-/// u and v of all particles of the bar at t = L/c, from v = v0 sin(πx/2L), on 160
-/// cells with `steps` time steps.
-pub fn smooth_run(sets: &[&str], steps: usize) -> (Vec<f64>, Vec<f64>) {
-    let scene = dyka(&[sets, &["grid.cells=160"]].concat());
-    let mut model = lme_mpm::setup::model::<1>(&scene);
-    model.dt = transit() / steps as f64;
-    let mut state = lme_mpm::setup::initial_state(&model, &scene);
-    let start: Vec<f64> = state.particle.x.iter().map(|x| x[0]).collect();
-    for (v, x) in state.particle.v.iter_mut().zip(&start) {
-        v[0] = 0.1 * (std::f64::consts::FRAC_PI_2 * x / 0.1333).sin();
-    }
-    march(&model, &mut state, steps);
-    let u = state.particle.x.iter().zip(&start).map(|(x, start)| x[0] - start).collect();
-    (u, state.particle.v.iter().map(|v| v[0]).collect())
-}
-
-/// Every basis of the bar, with its name in tables.
-pub const BASES: [(&str, &[&str]); 6] = [
-    ("linear", &[]),
-    ("ugimp", &["basis.kind=ugimp"]),
-    ("bspline", &["basis.kind=bspline"]),
-    ("lme γ = 0.8", &["basis.kind=lme", "basis.gamma=0.8"]),
-    ("lme γ = 1.8", &["basis.kind=lme", "basis.gamma=1.8"]),
-    ("lme γ = 4", &["basis.kind=lme", "basis.gamma=4"]),
-];
-
-/// Every scheme with its variants, with its name in snapshots and tables.
-pub const SCHEMES: [(&str, &[&str]); 7] = [
-    ("newmark", &["time.integrator=newmark"]),
-    ("newmark as printed", &["time.integrator=newmark", "time.reading=as-printed"]),
-    ("euler (first)", &["time.integrator=forward-euler", "time.stress_update=first"]),
-    ("euler (last)", &["time.integrator=forward-euler", "time.stress_update=last"]),
-    (
-        "euler (modified last)",
-        &["time.integrator=forward-euler", "time.stress_update=modified-last"],
-    ),
-    ("corrected euler", &["time.integrator=corrected-euler"]),
-    ("generalized-α (0.8)", &["time.integrator=generalized-alpha", "time.rho_b=0.8"]),
-];
-
 /// Random cases, the same ones in every run.
 pub fn same_every_time(cases: u32) -> ProptestConfig {
     let rng_seed = RngSeed::Fixed(31);
     ProptestConfig { cases, failure_persistence: None, rng_seed, ..ProptestConfig::default() }
-}
-
-/// A square or cubic block, free on all sides, with the changes of `sets`.
-pub fn block(dimension: usize, sets: &[&str]) -> Scene {
-    let list = |x: &str| format!("[{}]", vec![x; dimension].join(","));
-    let text = format!(
-        "title = 'block'\nmethod = 'otm'\nmass = 'lumped'\n\
-         basis = {{ kind = 'lme', gamma = 1.8 }}\n\
-         body = {{ length = {}, density = 1000, youngs_modulus = 1e6, poisson_ratio = 0.3 }}\n\
-         grid = {{ cells = {}, particles_per_cell = {} }}\n\
-         time = {{ integrator = 'newmark', cfl = 0.4, end = 0.05 }}\n",
-        list("1"),
-        list(if dimension == 3 { "3" } else { "5" }),
-        list("1"),
-    );
-    scene(&text, sets)
 }

@@ -59,10 +59,6 @@ impl<const D: usize> Shape<D> {
         self.entry.len()
     }
 
-    pub fn is_empty(&self) -> bool {
-        self.entry.is_empty()
-    }
-
     // ANCHOR: pairs
     /// Σ_p Σ_I runs over every pair as (I, p, N_Ip, ∇N_Ip), particle by particle.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize, f64, &SVector<f64, D>)> {

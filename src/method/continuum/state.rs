@@ -100,10 +100,6 @@ impl<const D: usize> Particles<D> {
     pub fn len(&self) -> usize {
         self.m.len()
     }
-
-    pub fn is_empty(&self) -> bool {
-        self.m.is_empty()
-    }
 }
 
 impl<const D: usize> Nodes<D> {
@@ -126,9 +122,5 @@ impl<const D: usize> Nodes<D> {
     /// Gives N_n, the number of nodes.
     pub fn len(&self) -> usize {
         self.m.len()
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.m.is_empty()
     }
 }
