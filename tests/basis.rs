@@ -12,7 +12,7 @@ use lme_mpm::method::basis::scattered::NodeValues;
 use lme_mpm::method::basis::scattered::values_at as lme_at;
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::method::grid::Grid;
-use lme_mpm::output::figure;
+use lme_mpm::output::figure::{self, Axes};
 use nalgebra::{SMatrix, SVector, Vector1, Vector2, Vector3};
 use proptest::prelude::*;
 use test_case::test_case;
@@ -255,7 +255,10 @@ fn basis_figure() {
         (-120..=120).map(value).collect()
     };
     let lists: Vec<_> = bases.iter().map(|(name, b)| (name.to_string(), curve(b))).collect();
-    let svg = figure::curves("One function of each basis", "(x − x_I)/h [–]", "N [–]", &lists);
+    let svg = figure::curves(
+        &lists,
+        &Axes::new("One function of each basis", "(x − x_I)/h [–]", "N [–]", false),
+    );
     approve_picture("basis__shapes", svg);
 }
 

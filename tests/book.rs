@@ -162,6 +162,28 @@ fn named_tests_exist() {
     assert!(names > 10, "{names}");
 }
 
+/// Every file that README, changelog or book names in code letters exists.
+#[test]
+fn named_files_exist() {
+    let mut texts = chapters();
+    texts.extend(["README.md", "CHANGELOG.md"].map(|path| (path.to_string(), read(path))));
+    let mut count = 0;
+    for (name, text) in texts {
+        for word in text.split('`').skip(1).step_by(2) {
+            let plain = |c: char| c.is_ascii_alphanumeric() || "_-./".contains(c);
+            let ours = ["src/", "tests/", "data/", "snapshots/", "book/"];
+            if ours.iter().any(|start| word.starts_with(start))
+                && word.chars().all(plain)
+                && !word.contains("NAME")
+            {
+                assert!(root().join(word).exists(), "{name} names {word}");
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 40, "{count}");
+}
+
 /// Every snapshot belongs to a test that names it, whole or by its parts.
 #[test]
 fn snapshots_have_tests() {

@@ -2,7 +2,6 @@
 
 use crate::support::*;
 use lme_mpm::method::measure::{Order, rms};
-use lme_mpm::output::figure;
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 
@@ -85,7 +84,7 @@ fn dyka_order_in_space() {
         ("stress at 3L/4", list(|error| error.sigma)),
         ("displacement field", list(|error| error.u)),
     ];
-    approve_picture("dyka__convergence", figure::convergence("Errors of the bar", &lists));
+    approve_picture("dyka__convergence", figures::convergence("Errors of the bar", &lists));
     let (all, fine) = (orders(&h, &errors), orders(&h[1..], &errors[1..]));
     let mut text = String::from("quantity,value,unit\n");
     for (name, all, fine, theory) in [

@@ -7,7 +7,7 @@ use lme_mpm::method::basis::Basis;
 use lme_mpm::method::basis::lme::{Failure, plain};
 use lme_mpm::method::basis::scattered::values_at as lme_at;
 use lme_mpm::method::grid::Grid;
-use lme_mpm::output::figure;
+use lme_mpm::output::figure::{self, Axes};
 use nalgebra::{Matrix2, SVector, Vector1, Vector2};
 use std::collections::BTreeMap;
 
@@ -144,7 +144,7 @@ fn lme_against_60_digits() {
 /// Fig. 3 of the paper, drawn anew.
 #[test]
 fn lme_figure_3() {
-    approve_picture("lme__figure_3", figure::local_max_ent(&[0.8, 1.8, 4.0]).unwrap());
+    approve_picture("lme__figure_3", figures::local_max_ent(&[0.8, 1.8, 4.0]).unwrap());
 }
 
 /// |r| before each step of plain Newton at x among the nodes −8 … 8 with the spacing 1.
@@ -192,7 +192,10 @@ fn lme_plain_newton_fails() {
         (format!("γ = {gamma}"), points.take(10).collect())
     };
     let lists: Vec<_> = [1.8, 4.0, 8.0, 12.0, 20.0].into_iter().map(curve).collect();
-    let svg = figure::curves("Plain Newton from λ = 0 at x = 0.4", "step", "log10 |r|", &lists);
+    let svg = figure::curves(
+        &lists,
+        &Axes::new("Plain Newton from λ = 0 at x = 0.4", "step", "log10 |r|", false),
+    );
     approve_picture("lme__plain_newton", svg);
 }
 

@@ -8,7 +8,7 @@
 
 use crate::support::*;
 use lme_mpm::method::exact::Exact;
-use lme_mpm::output::figure;
+use lme_mpm::output::figure::{self, Axes};
 use lme_mpm::output::summary;
 use lme_mpm::run::table::{Table, shortest};
 use lme_mpm::setup;
@@ -64,13 +64,13 @@ fn exact_figures() {
     let (length, time) = (bar.length, bar.length / bar.c());
     let velocity = |tau: f64| bar.at(length, tau * time).velocity;
     let title = "Exact velocity at the free end of the Dyka and Ingel bar";
-    let svg = figure::exact_history(title, "velocity v [m/s]", 8.0, velocity);
+    let svg = figures::exact_history(title, "velocity v [m/s]", 8.0, velocity);
     approve_picture("exact__velocity_end", svg);
     let stress = |tau: f64| bar.at(0.75 * length, tau * time).stress * 1e-6;
     let title = "Exact stress at 3L/4 of the Dyka and Ingel bar";
-    let svg = figure::exact_history(title, "stress σ [MPa]", 8.0, stress);
+    let svg = figures::exact_history(title, "stress σ [MPa]", 8.0, stress);
     approve_picture("exact__stress_three_quarter", svg);
-    approve_picture("exact__fronts", figure::fronts(&bar, 4.0));
+    approve_picture("exact__fronts", figures::fronts(&bar, 4.0));
 }
 
 /// The same picture twice in one process is the same text.
@@ -136,7 +136,7 @@ fn comparison_on_the_bar() {
     let lists: Vec<(&str, Vec<(f64, f64)>)> =
         lists.iter().map(|(name, points)| (name.as_str(), points.clone())).collect();
     let title = "Velocity error of the bar by basis and mass matrix";
-    approve_picture("comparison__bar_figure", figure::convergence(title, &lists));
+    approve_picture("comparison__bar_figure", figures::convergence(title, &lists));
 }
 
 /// The velocity of the bar's end, linear basis with the lumped mass matrix against local
@@ -151,7 +151,7 @@ fn comparison_histories() {
             (name.to_string(), t.zip(column(&history, "velocity_end")).collect())
         });
     let title = "Velocity at the free end, 40 cells";
-    let svg = figure::curves(title, "time t [µs]", "velocity v [m/s]", &lists);
+    let svg = figure::curves(&lists, &Axes::new(title, "time t [µs]", "velocity v [m/s]", false));
     approve_picture("comparison__velocity_end", svg);
 }
 
@@ -174,7 +174,7 @@ fn comparison_across_cells() {
     }
     lists.push(("exact".to_string(), curve(&histories[2].1, "displacement_middle_exact")));
     let title = "Manufactured motion: the middle of the bar";
-    let svg = figure::curves(title, "time t [ms]", "displacement u [m]", &lists);
+    let svg = figure::curves(&lists, &Axes::new(title, "time t [ms]", "displacement u [m]", false));
     approve_picture("manufactured__displacement", svg);
 }
 

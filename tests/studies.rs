@@ -2,7 +2,7 @@
 
 use crate::support::*;
 use lme_mpm::method::cost::Cost;
-use lme_mpm::output::figure;
+use lme_mpm::output::figure::{self, Axes};
 use lme_mpm::scene::DYKA;
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::study::configuration::{Configuration, Template};
@@ -431,11 +431,12 @@ fn gamma_from_end_to_end() {
     approve("gamma__study", &(table + "\n"));
     let curves = |name| gamma::curves(&rows, name);
     let title = "Velocity error of the bar against γ, 40 cells";
-    let svg = figure::log_curves(title, "γ [–]", "relative error [–]", &curves("velocity"));
+    let svg =
+        figure::curves(&curves("velocity"), &Axes::new(title, "γ [–]", "relative error [–]", true));
     approve_picture("gamma__velocity", svg);
     let title = "Frequency error of a wave of eight cells";
     let y_label = "relative error, size [–]";
-    let svg = figure::log_curves(title, "γ [–]", y_label, &curves("dispersion"));
+    let svg = figure::curves(&curves("dispersion"), &Axes::new(title, "γ [–]", y_label, true));
     approve_picture("gamma__dispersion", svg);
 }
 

@@ -230,7 +230,8 @@ pub fn gamma(dir: &Path, jobs: u16) -> Result<(), Fault> {
     for name in gammas::Effect::default().named().map(|(name, _)| name) {
         let words = name.replace('_', " ");
         let title = format!("{words} against γ");
-        let picture = figure::log_curves(&title, "γ [–]", &words, &gammas::curves(&rows, name));
+        let axes = figure::Axes::new(&title, "γ [–]", &words, true);
+        let picture = figure::curves(&gammas::curves(&rows, name), &axes);
         files.push((format!("{name}.svg"), picture.into_bytes()));
     }
     write_all(dir, &files, &[])?;

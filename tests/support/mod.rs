@@ -1,6 +1,7 @@
 //! What several tests share: runs, tables of shape functions, errors and orders, snapshots.
 
 mod cases;
+pub mod figures;
 pub mod kit;
 pub mod program;
 mod reference;
