@@ -1,7 +1,7 @@
 """Counts, module by module, how many mutants of the code are found.
 
     cargo install cargo-mutants
-    cargo mutants -o target/mutants/1 -- -- --skip stability::
+    cargo mutants -o target/mutants/1 -- -- --skip convergence:: --skip stability:: --skip conservation::
     cargo mutants -o target/mutants/1 --iterate
     python3 data/mutants/score.py target/mutants/*
 
