@@ -261,7 +261,7 @@ pub enum BasisName {
     Bspline,
 }
 
-/// The name of the quantity whose error is asked for.
+/// Reads the name of the quantity whose error is asked for.
 fn criterion() -> impl TypedValueParser<Value = Criterion> {
     PossibleValuesParser::new(Criterion::ALL.map(Criterion::name)).try_map(|name| {
         let mut known = Criterion::ALL.into_iter();

@@ -98,7 +98,7 @@ fn run(scene: &Scene, out: Option<PathBuf>, quiet: bool) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The summary as a table for the terminal.
+/// Lays out the summary as a table for the terminal.
 fn table(lines: &[SummaryLine]) -> Table {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_header(["quantity", "value", "unit"]);
@@ -117,7 +117,7 @@ fn table(lines: &[SummaryLine]) -> Table {
     table
 }
 
-/// `lme-mpm scenes`.
+/// Does `lme-mpm scenes`.
 fn scenes(ask: Option<Scenes>) -> Result<(), Fault> {
     match ask {
         None => {
@@ -135,7 +135,7 @@ fn scenes(ask: Option<Scenes>) -> Result<(), Fault> {
     }
 }
 
-/// `lme-mpm completions`.
+/// Does `lme-mpm completions`.
 fn completions(shell: Shell) -> Result<(), Fault> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "lme-mpm", &mut script);
@@ -195,7 +195,8 @@ fn trace(
     }
 }
 
-/// Folder, made if need be, and name of a file to write, which is not the `input`.
+/// Gives the folder, made if need be, and the name of a file to write, which is not the
+/// `input`.
 fn place_beside(input: &Path, out: &Path) -> Result<(PathBuf, String), Fault> {
     let refuse = |problem: &str| Fault::Argument {
         argument: "--out",

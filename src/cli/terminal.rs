@@ -4,7 +4,7 @@ use lme_mpm::scene::fault::Fault;
 use std::io::{Read, Write};
 use std::path::Path;
 
-/// A file, or standard input for `-`.
+/// Opens a file, or standard input for `-`.
 pub fn open(path: &Path) -> Result<Box<dyn Read>, Fault> {
     if path == Path::new("-") {
         return Ok(Box::new(std::io::stdin()));
@@ -14,8 +14,8 @@ pub fn open(path: &Path) -> Result<Box<dyn Read>, Fault> {
     Ok(Box::new(file))
 }
 
-/// Prints, without colours unless on a terminal. A reader that has seen enough
-/// and closed the pipe is no error.
+/// Prints bytes, without colours unless on a terminal. A reader that has seen enough and closed
+/// the pipe is no error.
 pub fn print_bytes(bytes: &[u8]) -> Result<(), Fault> {
     let mut out = anstream::stdout();
     match out.write_all(bytes).and_then(|()| out.flush()) {

@@ -6,7 +6,7 @@
 use super::basis::lme::Failure;
 use thiserror::Error;
 
-/// A point in a run: time step k and time t (s).
+/// A moment is a point in a run: time step k and time t (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     pub step: usize,
@@ -14,10 +14,10 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// k = 0, t = 0.
+    /// This is k = 0, t = 0.
     pub const START: Moment = Moment { step: 0, time: 0.0 };
 
-    /// The end of time step `step` with the size `dt` (s).
+    /// Gives the end of time step `step` with the size `dt` (s).
     pub fn of(step: usize, dt: f64) -> Self {
         Moment { step, time: step as f64 * dt }
     }
@@ -29,7 +29,7 @@ impl std::fmt::Display for Moment {
     }
 }
 
-/// What a step could not do, and for which particle or node.
+/// A breakdown says what a step could not do, and for which particle or node.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Breakdown {
     #[error(
@@ -62,13 +62,13 @@ pub enum Breakdown {
 }
 
 impl Breakdown {
-    /// The breakdown with the time step in which it happened.
+    /// Adds the time step in which it happened.
     pub fn at(self, moment: Moment) -> BrokenDown {
         BrokenDown { breakdown: self, moment }
     }
 }
 
-/// A run that cannot go on: what happened, at which step and time.
+/// A run has broken down: this says what happened, at which step and time.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("at {moment}: {breakdown}")]
 pub struct BrokenDown {

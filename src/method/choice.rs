@@ -2,7 +2,7 @@
 
 use super::reading::{StepEight, StressUpdate};
 
-/// The method that carries a body through time.
+/// A method carries a body through time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// The material point method, by one of its schemes.
@@ -11,7 +11,7 @@ pub enum Method {
     Otm,
 }
 
-/// The scheme that carries the material point method through time.
+/// An integrator is the scheme that carries the material point method through time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrator {
     /// The paper's explicit predictor-corrector, (27)-(29).
@@ -27,7 +27,7 @@ pub enum Integrator {
     },
 }
 
-/// The mass matrix of the nodes.
+/// The nodes have one of two mass matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mass {
     /// The row sums m_I of (18).

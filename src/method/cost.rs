@@ -1,10 +1,11 @@
 //! What a run costs, counted instead of timed: the same on every machine.
 //!
-//! What is made holds the count of what it took to make it: the table of shape functions
-//! its fillings, the mass matrix its factorisations, the nodes their loads.
+//! What is made holds the count of what it took to make it: the table of shape functions its
+//! rows and pairs, the working space of local max-ent its exponentials, iterations and
+//! candidates, the mass matrix its factorisations and solutions, the nodes their loads.
 //! [`super::model::State::cost`] is their sum.
 
-/// Deterministic cost counters.
+/// These counters say what a run has cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// Time steps taken.
@@ -32,12 +33,12 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// Every counter with its name, in the order of `cost.csv`.
+    /// Lists every counter with its name, in the order of `cost.csv`.
     pub fn named(mut self) -> [(&'static str, u64); 11] {
         self.places().map(|(name, count)| (name, *count))
     }
 
-    /// Every counter with its name, to be set.
+    /// Lists every counter with its name, to be set.
     pub fn places(&mut self) -> [(&'static str, &mut u64); 11] {
         [
             ("steps", &mut self.steps),

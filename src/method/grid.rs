@@ -22,8 +22,8 @@ pub fn odometer<const D: usize>(count: [usize; D]) -> impl Iterator<Item = [usiz
     })
 }
 
-/// A regular grid of boxes with spacing h, in the frame of the body's lower
-/// corner: node i along an axis stands at (i − before) h.
+/// A grid is regular, of boxes with spacing h, in the frame of the body's lower corner: node i
+/// along an axis stands at (i − before) h.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid<const D: usize> {
     /// h, the spacing along each axis (m).
@@ -37,7 +37,7 @@ pub struct Grid<const D: usize> {
     pub upper: SVector<f64, D>,
 }
 
-/// A point seen from its cell.
+/// A located point knows its cell, and its place there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Located<const D: usize> {
     /// The cell's index along each axis.

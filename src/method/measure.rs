@@ -20,7 +20,7 @@ pub fn rms(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
 // ANCHOR_END: rms
 
 // ANCHOR: observed_order
-/// An order of convergence as observed.
+/// An order of convergence is observed as a slope with an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
     /// The exponent of error ∝ h^slope.
@@ -39,7 +39,7 @@ impl std::fmt::Display for Order {
 /// interval of Student's t for n − 2 degrees of freedom. 3 to 12 points, all
 /// above 0.
 pub fn observed_order(h: &[f64], error: &[f64]) -> Order {
-    /// t of 97.5% for 1, 2, … degrees of freedom.
+    /// These are t of 97.5% for 1, 2, … degrees of freedom.
     const STUDENT: [f64; 10] =
         [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];
     let n = h.len() as f64;

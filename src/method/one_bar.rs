@@ -5,7 +5,7 @@
 //! of the library does the same steps in 1D to 3D, for more bases, schemes and loads;
 //! `tests/one_bar.rs` holds this file to it.
 
-/// An elastic bar on 0 ≤ x ≤ L, fixed at x = 0 and free at x = L, in SI units.
+/// The bar is elastic, lies on 0 ≤ x ≤ L, is fixed at x = 0 and free at x = L.
 pub struct OneBar {
     /// L (m), ρ (kg/m³) and E (Pa).
     pub length: f64,
@@ -21,7 +21,7 @@ pub struct OneBar {
     pub steps: usize,
 }
 
-/// All particles of one time step: x_p (m), v_p (m/s), σ_p (Pa), ρ_p (kg/m³).
+/// A snapshot holds all particles at one k: x_p (m), v_p (m/s), σ_p (Pa), ρ_p (kg/m³).
 pub type Snapshot = [Vec<f64>; 4];
 
 // ANCHOR: one_bar
@@ -111,7 +111,7 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
     Some(history)
 }
 
-/// The linear basis: (I, N_I, ∇N_I) of the two nodes beside x.
+/// Gives (I, N_I, ∇N_I) of the linear basis for the two nodes beside x.
 fn linear(x: f64, h: f64, nodes: usize) -> Option<Vec<(usize, f64, f64)>> {
     let cell = (x / h) as usize;
     let xi = (x - cell as f64 * h) / h;
@@ -121,8 +121,8 @@ fn linear(x: f64, h: f64, nodes: usize) -> Option<Vec<(usize, f64, f64)>> {
 // ANCHOR_END: one_bar
 
 // ANCHOR: one_bar_lme
-/// Local max-ent, (31)-(37): (I, N_I, ∇N_I) of the nodes within the cut-off radius, by
-/// Newton's method from λ = 0.
+/// Gives (I, N_I, ∇N_I) of local max-ent, (31)-(37), for the nodes within the cut-off radius,
+/// by Newton's method from λ = 0.
 fn local_max_ent(x: f64, h: f64, nodes: usize, gamma: f64) -> Option<Vec<(usize, f64, f64)>> {
     let beta = gamma / (h * h);
     let from = |I: usize| x - I as f64 * h; // x − x_I

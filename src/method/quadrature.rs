@@ -2,9 +2,9 @@
 
 use super::choice::Method;
 
-/// The `n` points of a cell along one axis: place (0 to 1) and length (in units of
-/// the cell). MPM: equal distances. OTM: Gauss's points, 1 to 4, which integrate
-/// polynomials up to the degree 2n − 1.
+/// Lists the `n` points of a cell along one axis: place (0 to 1) and length (in units of the
+/// cell). MPM: equal distances. OTM: Gauss's points, 1 to 4, which integrate polynomials up to
+/// the degree 2n − 1.
 pub fn points(method: Method, n: usize) -> Vec<[f64; 2]> {
     let about_middle = |list: &[[f64; 2]]| -> Vec<[f64; 2]> {
         list.iter().map(|[r, w]| [0.5 + 0.5 * r, 0.5 * w]).collect()

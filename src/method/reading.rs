@@ -4,8 +4,8 @@
 //! Notes without a type, because only one reading runs:
 //!
 //! * **Order of the stress update** of the Algorithm. It never says when (3) is
-//!   applied. It stands between steps 6 and 7 here: the force of step 7 needs
-//!   σ at k+1, and (3) needs Δε of step 5.
+//!   applied. It ends step 6 here: the force of step 7 needs σ at k+1, and (3)
+//!   needs Δε of step 5.
 //! * **Step 1, (28).** The algorithm writes (1 − γ) Σ f N / m Δt, the text
 //!   writes it with Δt in front. They are the same.
 //! * **Step 2** discards the nodal values, among them the p_I of k that step 8
@@ -18,7 +18,7 @@
 //! * **Appendix A** says that the ends radiate; both reflect. See
 //!   [`crate::method::exact::riemann`].
 
-/// Step 8: how far the nodal momentum is carried before the next step 1.
+/// Step 8 carries the nodal momentum on, and can be read in two ways: how far?
 ///
 /// The predictor (27) adds Δt p_I/m_I + ½Δt² f_I/m_I, so p_I must be the
 /// momentum *at* k+1. The mapped p_I holds the predicted velocity, short of
@@ -45,7 +45,7 @@ pub enum StepEight {
     AsPrinted,
 }
 
-/// Forward Euler: when the stress is updated, which the paper leaves open.
+/// Forward Euler updates the stress at one of three points, which the paper leaves open.
 ///
 /// On particles that do not leave their places, `First` and `ModifiedLast` are
 /// one leapfrog, the same as Newmark's method, with the time labels of velocity

@@ -14,8 +14,8 @@ pub fn text(path: &Path) -> Result<String, Fault> {
     fs::read_to_string(path).map_err(|source| Fault::Read { path: path.to_path_buf(), source })
 }
 
-/// The text of a scene file; where there is no such file, of the shipped scene with that
-/// name.
+/// Gives the text of a scene file; where there is no such file, that of the shipped scene with
+/// that name.
 ///
 /// Errors: [`Fault::Read`], [`Fault::NoScene`].
 pub fn scene_text(path: &Path) -> Result<String, Fault> {

@@ -20,7 +20,7 @@ pub fn source(entry: &Entry) -> (&'static str, &'static str) {
     }
 }
 
-/// Things are looked up in two traces.
+/// Two traces are looked up side by side.
 pub struct Traces<'a> {
     pub reference: &'a HashMap<Address, f64>,
     pub theirs: &'a HashMap<Address, f64>,
@@ -77,7 +77,7 @@ fn value_tells(entry: &Entry, theirs: f64, reference: &[Entry]) -> Option<&'stat
     })
 }
 
-/// A node that is fixed keeps nothing of what particles bring.
+/// Tells whether a node is fixed: it keeps nothing of what particles bring.
 fn is_fixed(entry: &Entry, reference: &[Entry]) -> bool {
     let of_node = |symbol: &'static str| {
         let here = (entry.index, entry.component);

@@ -16,7 +16,7 @@ pub struct Tolerance {
     pub absolute: f64,
 }
 
-/// This is the first number that differs.
+/// A divergence is the first number that differs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Divergence {
     pub reference: Entry,
@@ -227,7 +227,7 @@ fn by_place(entries: &[Entry]) -> HashMap<Address, f64> {
     entries.iter().map(|entry| (address(entry), entry.value)).collect()
 }
 
-/// Things that a port has printed are looked up here.
+/// This looks up what a port has printed.
 struct Own<'a> {
     values: HashMap<Address, f64>,
     lines: HashMap<Address, u64>,

@@ -14,7 +14,8 @@ use nalgebra::{SMatrix, SVector};
 pub struct Entry {
     /// The time step, 0 for the start.
     pub k: usize,
-    /// The step of the scheme within it, counted from 1.
+    /// The step of the scheme within it, counted from 1; 0 for what is given, and for OTM's
+    /// start.
     pub step: usize,
     /// As the columns of the table of symbols: `m_I`, `sigma_p`, ….
     pub symbol: &'static str,
@@ -39,8 +40,8 @@ pub fn address(entry: &Entry) -> Address {
 /// A trace has these columns.
 pub const COLUMNS: [&str; 7] = ["k", "step", "symbol", "index", "node", "component", "value"];
 
-/// Symbols stand in the paper's order, with the equation, what it is, and the place in the
-/// book.
+/// Symbols stand in the paper's order, each with its equation or what it is, and its place in
+/// the book.
 pub const SYMBOLS: [(&str, &str, &str); 29] = [
     ("dt", "T/n", "algorithm.html#time-step"),
     ("N_Ip", "(31) or the basis at hand", "basis.html"),

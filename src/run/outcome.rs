@@ -5,7 +5,7 @@ use crate::method::breakdown::BrokenDown;
 use crate::method::cost::Cost;
 use thiserror::Error;
 
-/// A finished run gives this.
+/// The outcome is what a finished run gives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// One row for each recorded step.

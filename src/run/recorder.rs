@@ -17,7 +17,7 @@ use nalgebra::SVector;
 /// elastic body keeps it near 1 or below.
 const BLOW_UP: f64 = 10.0;
 
-/// The recorder writes the history.
+/// The recorder writes the history, and watches the energy.
 pub struct Recorder<'a, const D: usize> {
     pub history: Table,
     /// The particles at the recorded steps, if asked for.
@@ -35,7 +35,7 @@ pub struct Recorder<'a, const D: usize> {
     reference: Vec<SVector<f64, D>>,
 }
 
-/// This is the work of the loads so far.
+/// This is the work that the loads have done so far.
 struct LoadWork<const D: usize> {
     sum: f64,
     /// The same without signs, what the loads have moved to and fro (J).

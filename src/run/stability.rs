@@ -25,7 +25,7 @@ use crate::scene::Scene;
 use crate::setup;
 use nalgebra::{SMatrix, SVector};
 
-/// Iterations after which Lanczos's method stops in any case.
+/// After so many iterations Lanczos's method stops in any case.
 const MOST_ITERATIONS: usize = 300;
 
 /// A particle that has just touched a new node switches it on. For uGIMP and
@@ -33,7 +33,7 @@ const MOST_ITERATIONS: usize = 300;
 /// is also taken with all particles moved by this share of a cell.
 const TOUCH: f64 = 1e-7;
 
-/// A factor is what a scheme does to a nodal velocity of A's eigenvalue s.
+/// A factor is g, what a scheme makes of an eigenvalue s of A.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Factor {
     One,

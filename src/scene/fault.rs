@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// An error in a scene: where it stands, what is wrong, what is allowed.
+/// An error in a scene says where it stands, what is wrong, and what is allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneError {
     /// The file, or `--set` for a value from the command line.
@@ -31,7 +31,7 @@ pub struct SceneError {
 }
 
 impl SceneError {
-    /// The error as a picture of the offending line.
+    /// Draws the offending line with the error below it.
     pub fn render(&self, renderer: &Renderer) -> String {
         let title = match self.key.as_str() {
             "" => self.problem.clone(),
@@ -59,7 +59,7 @@ impl std::fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// Any error of the program.
+/// A fault is any error of the program.
 #[derive(Debug, Error)]
 pub enum Fault {
     #[error("{0}")]
@@ -112,7 +112,8 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// 1 for a run that broke down, 2 for input or output that cannot be used.
+    /// Gives the exit code: 1 for a run that broke down or a port that differs, 2 for input or
+    /// output that cannot be used.
     pub fn exit_code(&self) -> u8 {
         match self {
             Fault::Run { .. } | Fault::Differs(_) => 1,

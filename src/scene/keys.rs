@@ -6,7 +6,7 @@ use super::kind::Kind::{self, *};
 use super::kind::{Number, any, between, plain, positive, whole};
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
-/// One key.
+/// A key of a scene has a path, and all that is to be known about its value.
 #[derive(Clone, Copy)]
 pub struct Key {
     /// Its dotted path. The entries of a list share one; `<side>` stands for a name of
@@ -21,7 +21,7 @@ pub struct Key {
     pub help: &'static str,
 }
 
-/// What holds where a scene does not have a key.
+/// This says what holds where a scene does not have a key.
 #[derive(Clone, Copy)]
 pub enum Without {
     /// The table is incomplete; for a key that goes with a word, where that word is chosen.
@@ -33,13 +33,13 @@ pub enum Without {
     Says(&'static str),
 }
 
-/// Names of the axes.
+/// The axes have these names.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Names of the lower and the upper side along each axis.
+/// The lower and the upper side along each axis have these names.
 pub const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], ["back", "front"]];
 
-/// Names that columns and files of a run, and the lines of its summary, have already.
+/// Columns and files of a run, and the lines of its summary, have these names already.
 const TAKEN: &[&str] = &[
     "step",
     "t",
@@ -67,7 +67,7 @@ const FROM_1: Number = whole(1.0, Unbounded);
 const MODE: Number = whole(1.0, Included(1000.0));
 const RAMP: Number = Number { least: Included(0.0), ..any("s") };
 
-/// All keys, in the order in which a scene is read aloud.
+/// All keys stand here, in the order of the book's reference.
 pub const KEYS: &[Key] = &[
     must("title", Text, "What summary and pictures are headed with"),
     must("method", Choice(&["mpm", "otm"]), "Particles on a grid, or on nodes that move"),
@@ -249,7 +249,7 @@ impl Key {
         Key { with: Some((key, word)), ..self }
     }
 
-    /// What its value may be, in words.
+    /// Says in words what its value may be.
     pub fn allowed(&self) -> String {
         let with = self.with.map(|(key, word)| format!("only with {key} = \"{word}\""));
         let besides = Some(self.besides.to_string()).filter(|besides| !besides.is_empty());
@@ -257,7 +257,7 @@ impl Key {
         all.into_iter().flatten().collect::<Vec<_>>().join("; ")
     }
 
-    /// What holds without it, in words.
+    /// Says in words what holds without it.
     pub fn without_words(&self) -> String {
         match self.without {
             Without::Refused if self.with.is_some() => "needed there".into(),
@@ -269,17 +269,17 @@ impl Key {
         }
     }
 
-    /// True where its table must have it, whatever else the scene says.
+    /// Tells whether its table must have it, whatever else the scene says.
     pub fn is_required(&self) -> bool {
         matches!(self.without, Without::Refused) && self.with.is_none()
     }
 
-    /// The table that it stands in, and its name there.
+    /// Gives the table that it stands in, and its name there.
     pub fn place(&self) -> (&'static str, &'static str) {
         self.path.rsplit_once('.').unwrap_or(("", self.path))
     }
 
-    /// The names that it stands for: its own, or those of all sides or axes.
+    /// Lists the names that it stands for: its own, or those of all sides or axes.
     pub fn names(&self) -> Vec<&'static str> {
         match self.place().1 {
             "<side>" => SIDES.concat(),
@@ -289,19 +289,19 @@ impl Key {
     }
 }
 
-/// The key with this path, which may hold indices of lists and names of sides.
+/// Finds the key with this path, which may hold indices of lists and names of sides.
 pub fn find(path: &str) -> Option<&'static Key> {
     let plain = without_indices(path);
     KEYS.iter().find(|key| stands_for(key.path, &plain))
 }
 
-/// The keys that may stand directly in the table at `path`.
+/// Lists the keys that may stand directly in the table at `path`.
 pub fn children(path: &str) -> impl Iterator<Item = &'static Key> {
     let plain = without_indices(path);
     KEYS.iter().filter(move |key| stands_for(key.place().0, &plain))
 }
 
-/// True where `pattern`, the path of a key, means `path`.
+/// Tells whether `pattern`, the path of a key, means `path`.
 fn stands_for(pattern: &str, path: &str) -> bool {
     let same = |(pattern, name): (&str, &str)| match pattern {
         "<side>" => SIDES.as_flattened().contains(&name),
@@ -312,7 +312,7 @@ fn stands_for(pattern: &str, path: &str) -> bool {
         && pattern.split('.').zip(path.split('.')).all(same)
 }
 
-/// `probe[1].name` → `probe.name`.
+/// Takes the indices out of a path: `probe[1].name` → `probe.name`.
 fn without_indices(path: &str) -> String {
     let mut inside = false;
     path.chars()

@@ -5,7 +5,7 @@ use std::ops::{Range, RangeBounds};
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// What a value may be, whatever the rest of the scene says.
+/// A kind says what a value may be, whatever the rest of the scene says.
 #[derive(Clone, Copy)]
 pub enum Kind {
     /// A table with keys of its own.
@@ -24,7 +24,7 @@ pub enum Kind {
     PerAxis(Number),
 }
 
-/// A number that a key wants.
+/// This is the number that a key wants: whole or not, within bounds.
 #[derive(Clone, Copy)]
 pub struct Number {
     pub whole: bool,
@@ -34,7 +34,7 @@ pub struct Number {
     pub unit: &'static str,
 }
 
-/// A value of the right kind.
+/// A value has been read, and is of the right kind.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     Table,
@@ -45,7 +45,7 @@ pub enum Value {
     Wholes(Vec<usize>),
 }
 
-/// What is wrong with a value, and where.
+/// This says what is wrong with a value, and where.
 pub struct Wrong {
     pub span: Range<usize>,
     pub problem: String,
@@ -53,28 +53,28 @@ pub struct Wrong {
     pub suggestion: Option<String>,
 }
 
-/// A number without bounds, in `unit`.
+/// Wants a number without bounds, in `unit`.
 pub const fn any(unit: &'static str) -> Number {
     Number { whole: false, least: Unbounded, most: Unbounded, unit }
 }
 
-/// A number above 0, in `unit`.
+/// Wants a number above 0, in `unit`.
 pub const fn positive(unit: &'static str) -> Number {
     Number { least: Excluded(0.0), ..any(unit) }
 }
 
-/// A number between two bounds, without a unit.
+/// Wants a number between two bounds, without a unit.
 pub const fn between(least: Bound<f64>, most: Bound<f64>) -> Number {
     Number { least, most, ..any("") }
 }
 
-/// A whole number from `least` on.
+/// Wants a whole number from `least` on.
 pub const fn whole(least: f64, most: Bound<f64>) -> Number {
     Number { whole: true, least: Included(least), most, unit: "" }
 }
 
 impl Kind {
-    /// What is allowed, as a phrase.
+    /// Says what is allowed, as a phrase.
     pub fn words(&self) -> String {
         match self {
             Kind::Table => "a table".into(),
@@ -94,7 +94,7 @@ impl Kind {
         }
     }
 
-    /// The value as written, checked.
+    /// Reads a value as it is written, and checks it.
     ///
     /// Errors: [`Wrong`] with the place, down to the entry of a list.
     pub fn read(&self, value: &Spanned<DeValue>) -> Result<Value, Wrong> {
@@ -134,7 +134,7 @@ impl Kind {
         }
     }
 
-    /// What a value of another type should have been.
+    /// Says what a value of another type should have been.
     fn noun(&self) -> &'static str {
         match self {
             Kind::Table => "a table with keys",
@@ -212,7 +212,7 @@ impl Wrong {
     }
 }
 
-/// Why no column and file of a run can have this name, if so.
+/// Says why no column and file of a run can have this name, if so.
 fn unfit(name: &str, taken: &[&str]) -> Option<&'static str> {
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if !((1..=64).contains(&name.len()) && name.chars().all(plain)) {
@@ -240,7 +240,7 @@ fn mismatch(value: &Spanned<DeValue>, wanted: &str) -> String {
     format!("this is {is}, expected {wanted}")
 }
 
-/// `"a", "b" or "c"`.
+/// Puts words side by side: `"a", "b" or "c"`.
 fn quoted(words: &[&str]) -> String {
     let all: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     match all.split_last() {
@@ -250,7 +250,7 @@ fn quoted(words: &[&str]) -> String {
     }
 }
 
-/// A number as one would write it: 0.5, 64, 1e-6, −1.
+/// Writes a number as one would by hand: 0.5, 64, 1e-6, −1.
 pub fn plain(x: f64) -> String {
     let short = x == 0.0 || (1e-3..1e5).contains(&x.abs());
     let text = if short { format!("{x}") } else { format!("{x:e}") };
@@ -260,7 +260,7 @@ pub fn plain(x: f64) -> String {
     }
 }
 
-/// The candidate that `word` was probably meant to be.
+/// Finds the candidate that `word` was probably meant to be.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     // The first measure favours a common beginning, the second swapped letters.
     let likeness = |candidate: &str| {

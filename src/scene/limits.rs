@@ -2,13 +2,13 @@
 
 use super::parts::Scene;
 
-/// The most memory that a scene may ask for (bytes).
+/// A scene may ask for no more memory (bytes).
 const MEMORY: f64 = 16.0 * 1024.0 * 1024.0 * 1024.0;
 
-/// More steps than any run will finish.
+/// No run will finish more steps.
 const MOST_STEPS: f64 = 1e12;
 
-/// What a scene asks for too much of.
+/// An excess is what a scene asks for too much of.
 pub struct Excess {
     pub key: &'static str,
     pub problem: String,
@@ -54,7 +54,7 @@ pub fn affordable(scene: &Scene) -> Result<(), Excess> {
     Ok(())
 }
 
-/// Memory for particles, nodes and their pairs (bytes).
+/// Estimates the memory for particles, nodes and their pairs (bytes).
 fn arrays(scene: &Scene) -> f64 {
     let (particles, nodes, _) = scene.sizes();
     let d = scene.dimension() as f64;

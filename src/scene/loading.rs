@@ -4,7 +4,7 @@ use super::fault::SceneError;
 use super::parts::{BodyForceSpec, Side, TractionSpec};
 use super::values::Values;
 
-/// The table `body_force`.
+/// Reads the table `body_force`.
 pub fn body_force(values: &Values) -> Result<Option<BodyForceSpec>, Box<SceneError>> {
     if !values.has("body_force") {
         return Ok(None);
@@ -15,7 +15,7 @@ pub fn body_force(values: &Values) -> Result<Option<BodyForceSpec>, Box<SceneErr
     Ok(Some(BodyForceSpec { acceleration, ramp: values.number("body_force.ramp")? }))
 }
 
-/// The table `traction`.
+/// Reads the table `traction`.
 pub fn traction(
     values: &Values,
     boundary: &[[Side; 2]],

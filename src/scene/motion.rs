@@ -7,7 +7,7 @@ use crate::method::choice::Method;
 use crate::method::exact::mode::Mode;
 use crate::method::quadrature::points;
 
-/// One of the tables `vibration`, `manufactured` and `initial_velocity`, or none.
+/// Reads one of the tables `vibration`, `manufactured` and `initial_velocity`, or none.
 pub fn motion(
     values: &Values,
     method: Method,
@@ -32,7 +32,7 @@ pub fn motion(
     }
 }
 
-/// The table that sets the motion.
+/// Finds the table that sets the motion, and refuses two.
 fn only_one(values: &Values) -> Result<Option<&'static str>, Box<SceneError>> {
     let mut tables = vec!["vibration", "manufactured"];
     tables.retain(|table| values.has(table));
@@ -51,7 +51,7 @@ fn only_one(values: &Values) -> Result<Option<&'static str>, Box<SceneError>> {
     Ok(table)
 }
 
-/// The number of a mode. It needs two particles for each half wave, or it is another mode
+/// Reads the number of a mode. It needs two particles for each half wave, or it is another mode
 /// that starts.
 fn mode(values: &Values, key: &str, grid: &GridSpec) -> Result<usize, Box<SceneError>> {
     let n = values.whole(key)?;
@@ -103,8 +103,8 @@ fn overlap(one: &Region, other: &Region) -> bool {
     (0..one.from.len()).all(|d| one.from[d] < other.to[d] && other.from[d] < one.to[d])
 }
 
-/// True where no particle of the cell at the region's lower corner, nor of the next,
-/// stands in it along axis `d`.
+/// Tells whether no particle of the cell at the region's lower corner, nor of the next, stands
+/// in it along axis `d`.
 fn is_empty(region: &Region, d: usize, method: Method, body: &Body, grid: &GridSpec) -> bool {
     let h = body.length[d] / grid.cells[d] as f64;
     let cell = libm::floor(region.from[d] / h);

@@ -4,8 +4,7 @@ use crate::method::basis::Basis;
 use crate::method::choice::{Mass, Method};
 use crate::method::exact::riemann::End;
 
-/// A scene, checked: every value is in range and every list has one entry for
-/// each axis.
+/// A scene is checked: every value is in range and every list has one entry for each axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The file's name without its ending, or "scene": where the results go.
@@ -29,7 +28,7 @@ pub struct Scene {
     pub vtk: bool,
 }
 
-/// A box of linear elastic material.
+/// The body is a box of linear elastic material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// L along each axis (m).
@@ -46,7 +45,7 @@ pub struct Body {
     pub balls: Vec<Ball>,
 }
 
-/// The points within a radius: a disc in 2D, a ball in 3D.
+/// A ball holds the points within a radius: in 2D it is a disc.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ball {
     /// From the body's lower corner (m).
@@ -77,20 +76,20 @@ pub struct Time {
     pub end: f64,
 }
 
-/// Which components of the velocity are zero on a side; all false is free.
+/// A side says which components of the velocity are zero there; with none it is free.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Side {
     pub fixed: Vec<bool>,
 }
 
 impl Side {
-    /// The end of a bar with this side.
+    /// Gives the end of a bar with this side.
     pub fn end(&self) -> End {
         if self.fixed[0] { End::Fixed } else { End::Free }
     }
 }
 
-/// How the body moves at the start.
+/// The motion says how the body moves at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// At rest but for these regions.
@@ -101,7 +100,7 @@ pub enum Motion {
     Manufactured { mode: usize, amplitude: f64 },
 }
 
-/// A force per mass, the same everywhere.
+/// This declares a force per mass, the same everywhere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyForceSpec {
     /// b (m/s²).
@@ -110,7 +109,7 @@ pub struct BodyForceSpec {
     pub ramp: f64,
 }
 
-/// Tractions on the sides of the box.
+/// This declares tractions on the sides of the box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TractionSpec {
     /// For each axis its lower and upper side: t (Pa) per area at t = 0.
@@ -119,7 +118,7 @@ pub struct TractionSpec {
     pub ramp: f64,
 }
 
-/// A box [from, to) in the body's frame with an initial velocity.
+/// A region is a box [from, to) in the body's frame with an initial velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
     /// Lower corner from the body's lower corner (m).
@@ -130,7 +129,7 @@ pub struct Region {
     pub velocity: Vec<f64>,
 }
 
-/// A quantity to follow at the particle nearest to a point.
+/// A probe follows a quantity at the particle nearest to a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     pub name: String,
@@ -139,7 +138,7 @@ pub struct Probe {
     pub position: Vec<f64>,
 }
 
-/// A component of a particle's state, axes counted from 0.
+/// A quantity is a component of a particle's state, axes counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     Velocity(usize),
@@ -148,7 +147,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Name for axis labels and unit.
+    /// Gives the name, for the labels of axes, and the unit.
     pub fn name_unit(&self) -> (&'static str, &'static str) {
         match self {
             Quantity::Velocity(_) => ("velocity", "m/s"),
@@ -159,19 +158,19 @@ impl Quantity {
 }
 
 impl Region {
-    /// True for a point of the box [from, to), x from the body's lower corner.
+    /// Tells whether a point is in the box [from, to), x from the body's lower corner.
     pub fn contains(&self, x: &[f64]) -> bool {
         (self.from.iter().zip(&self.to).zip(x)).all(|((from, to), x)| from <= x && x < to)
     }
 }
 
 impl Scene {
-    /// 1, 2 or 3.
+    /// Counts the axes: 1, 2 or 3.
     pub fn dimension(&self) -> usize {
         self.body.length.len()
     }
 
-    /// True where forces act from outside.
+    /// Tells whether forces act from outside.
     pub fn is_loaded(&self) -> bool {
         let manufactured = matches!(self.motion, Motion::Manufactured { .. });
         manufactured || self.body_force.is_some() || self.traction.is_some()

@@ -5,7 +5,7 @@ use super::keys::AXES;
 use super::parts::{Body, Probe, Quantity};
 use super::values::Values;
 
-/// The list `probe`.
+/// Reads the list `probe`.
 pub fn probes(values: &Values, body: &Body) -> Result<Vec<Probe>, Box<SceneError>> {
     let mut probes: Vec<Probe> = Vec::new();
     for entry in values.entries("probe") {

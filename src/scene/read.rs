@@ -12,14 +12,14 @@ use super::source::Source;
 use super::values::{Values, counted};
 use crate::method::choice::{Mass, Method};
 
-/// A scene with the places where its values were written.
+/// A declared scene knows the places where its values were written.
 pub struct Declared {
     pub scene: Scene,
     values: Values,
 }
 
 impl Declared {
-    /// The error `problem` with the value of `key`, wherever it was written.
+    /// Makes the error `problem` with the value of `key`, wherever it was written.
     pub fn error(&self, key: &str, problem: impl Into<String>) -> Box<SceneError> {
         self.values.error(key, problem)
     }

@@ -6,8 +6,8 @@ use super::source::join;
 use serde_json::{Map, Value, json};
 use std::ops::Bound::{Excluded, Included};
 
-/// The schema (JSON Schema, draft 7) of a scene file. It says what a key may be by itself,
-/// and which keys go with a chosen word; what keys ask of each other beyond that, only
+/// Makes the schema (JSON Schema, draft 7) of a scene file. It says what a key may be by
+/// itself, and which keys go with a chosen word; what keys ask of each other beyond that, only
 /// reading says.
 pub fn schema() -> Value {
     let mut schema = table("");
@@ -16,7 +16,7 @@ pub fn schema() -> Value {
     schema
 }
 
-/// The table at `path`: its keys and no others.
+/// Describes the table at `path`: its keys and no others.
 fn table(path: &str) -> Value {
     let mut properties = Map::new();
     for key in children(path) {
@@ -39,7 +39,8 @@ fn table(path: &str) -> Value {
     schema
 }
 
-/// For each word of the key `chosen`, what the keys of the table `path` that go with it say.
+/// Describes, for each word of the key `chosen`, what the keys of the table `path` that go with
+/// it say.
 fn going_with(path: &str, chosen: &Key) -> Vec<Value> {
     let Kind::Choice(words) = chosen.kind else { return Vec::new() };
     let condition = |word: &&str| {
@@ -63,7 +64,7 @@ fn going_with(path: &str, chosen: &Key) -> Vec<Value> {
     words.iter().filter_map(condition).collect()
 }
 
-/// What the value of the key at `path` may be.
+/// Describes what the value of the key at `path` may be.
 fn value(key: &Key, path: &str) -> Value {
     let mut schema = match key.kind {
         Kind::Table => table(path),

@@ -7,7 +7,7 @@ use crate::method::basis::Basis;
 use crate::method::choice::Integrator;
 use crate::method::reading::{StepEight, StressUpdate};
 
-/// The `time` table but for the integrator.
+/// Reads the `time` table but for the integrator.
 pub fn time(values: &Values) -> Result<Time, Box<SceneError>> {
     let given = |key: &str| match values.has(key) {
         true => values.number(key).map(Some),
@@ -27,7 +27,7 @@ pub fn time(values: &Values) -> Result<Time, Box<SceneError>> {
     })
 }
 
-/// The scheme with what it needs.
+/// Reads the scheme with what it needs.
 pub fn integrator(values: &Values) -> Result<Integrator, Box<SceneError>> {
     match values.word("time.integrator")? {
         "newmark" => {
@@ -48,7 +48,7 @@ pub fn integrator(values: &Values) -> Result<Integrator, Box<SceneError>> {
     }
 }
 
-/// The basis with what it needs.
+/// Reads the basis with what it needs.
 pub fn basis(values: &Values, grid: &GridSpec) -> Result<Basis, Box<SceneError>> {
     let half = |d: usize| grid.particles_per_cell.get(d).map_or(0.5, |n| 0.5 / *n as f64);
     match values.word("basis.kind")? {

@@ -4,7 +4,7 @@ use super::fault::Fault;
 use super::kind::nearest;
 use std::path::{Path, PathBuf};
 
-/// A scene that ships inside the program.
+/// A shipped scene is inside the program.
 pub struct Shipped {
     /// What it is called on the command line.
     pub name: &'static str,
@@ -21,7 +21,7 @@ macro_rules! shipped {
     };
 }
 
-/// All of them, the one that runs without a name first.
+/// All of them stand here, the one that runs without a name first.
 pub const SHIPPED: &[Shipped] = shipped![
     "dyka",
     "dyka-otm",
@@ -33,15 +33,16 @@ pub const SHIPPED: &[Shipped] = shipped![
     "colliding-discs"
 ];
 
-/// The Dyka & Ingel bar.
+/// This is the bar of Dyka and Ingel.
 pub const DYKA: &str = SHIPPED[0].text;
 
-/// The shipped scene with this name.
+/// Finds the shipped scene with this name.
 pub fn shipped(name: &str) -> Option<&'static Shipped> {
     SHIPPED.iter().find(|scene| scene.name == name)
 }
 
-/// The error of a scene that is neither a file nor shipped; `source` says why it is no file.
+/// Makes the error of a scene that is neither a file nor shipped; `source` says why it is no
+/// file.
 pub fn neither(path: &Path, source: std::io::Error) -> Fault {
     let names = || SHIPPED.iter().map(|scene| scene.name);
     let stem = path.file_stem().map_or("".into(), |stem| stem.to_string_lossy());

@@ -3,21 +3,21 @@
 use super::parts::{Body, Scene};
 use crate::method::continuum::law::LinearElastic;
 
-/// c = √((λ + 2μ) / ρ) (m/s), the speed of a plane wave, (46) in the bar.
+/// Gives c = √((λ + 2μ) / ρ) (m/s), the speed of a plane wave, (46) in the bar.
 pub fn wave_speed(body: &Body) -> f64 {
     let law = LinearElastic::new(body.youngs_modulus, body.poisson_ratio);
     libm::sqrt(law.p_wave_modulus() / body.density)
 }
 
 impl Scene {
-    /// The smallest spacing (m).
+    /// Finds the smallest spacing (m).
     fn spacing(&self) -> f64 {
         let per_axis = self.body.length.iter().zip(&self.grid.cells);
         per_axis.map(|(length, cells)| length / *cells as f64).fold(f64::INFINITY, f64::min)
     }
 
     // ANCHOR: step_count
-    /// N_t: as many equal steps as keep c Δt / h at or below `time.cfl`.
+    /// Gives N_t: as many equal steps as keep c Δt / h at or below `time.cfl`.
     ///
     /// A count within 1e-9 (relative) of a whole number is that number, so that
     /// an end given to ten digits does not cost a step; the Courant number may
@@ -30,7 +30,8 @@ impl Scene {
     }
     // ANCHOR_END: step_count
 
-    /// Numbers of particles, nodes and time steps, before anything is built.
+    /// Counts particles, nodes and time steps, before anything is built; with balls the
+    /// particles of the whole box.
     pub fn sizes(&self) -> (f64, f64, f64) {
         let (mut particles, mut nodes) = (1.0, 1.0);
         for d in 0..self.dimension() {
@@ -42,7 +43,7 @@ impl Scene {
         (particles, nodes, self.step_count())
     }
 
-    /// The most nodes that a particle can see, before anything is built.
+    /// Bounds the nodes that a particle can see, before anything is built.
     pub fn pairs_per_particle(&self) -> f64 {
         let along = |d: usize| {
             let [before, after] = self.grid.beyond[d];
@@ -51,12 +52,12 @@ impl Scene {
         (0..self.dimension()).map(along).product()
     }
 
-    /// c Δt / h of a time step (s).
+    /// Gives c Δt / h of a time step `dt` (s).
     pub fn courant_number_of(&self, dt: f64) -> f64 {
         wave_speed(&self.body) * dt / self.spacing()
     }
 
-    /// c Δt / h of the run, at or below `time.cfl`.
+    /// Gives c Δt / h of the run, at or below `time.cfl`.
     pub fn courant_number(&self) -> f64 {
         wave_speed(&self.body) * self.time.end / (self.step_count() * self.spacing())
     }

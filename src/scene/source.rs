@@ -9,10 +9,10 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// What may follow `--set`.
+/// This may follow `--set`.
 const SET: &str = "KEY=VALUE, for example grid.cells=80";
 
-/// One passage of the text, and where it begins in the run of all spans.
+/// A passage is a piece of the text that knows where it begins in the run of all spans.
 struct Passage {
     path: String,
     /// The text behind as many blanks as `start` says.
@@ -26,7 +26,7 @@ impl Passage {
     }
 }
 
-/// The table of a scene with the `sets` merged in; nothing of it is checked.
+/// Makes the table of a scene with the `sets` merged in; nothing of it is checked.
 ///
 /// Errors: [`SceneError`] for what is no TOML, or no `KEY=VALUE`.
 pub fn merged(path: &str, text: &str, sets: &[String]) -> Result<toml::Table, Box<SceneError>> {
@@ -35,7 +35,7 @@ pub fn merged(path: &str, text: &str, sets: &[String]) -> Result<toml::Table, Bo
     table.map_err(|error| source.error("", error.span().unwrap_or(0..0), error.message()))
 }
 
-/// A scene's text: the file first, then one passage for each `--set`.
+/// A source is a scene's text: the file first, then one passage for each `--set`.
 ///
 /// Every passage is parsed as if it followed those before it, so that one
 /// number, the span, says both which passage and where in it.
@@ -44,7 +44,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// The passages of a scene; `sets` are the arguments of `--set`: `KEY=VALUE` gives a
+    /// Makes the passages of a scene; `sets` are the arguments of `--set`: `KEY=VALUE` gives a
     /// value, `KEY=` takes it out.
     pub fn new(path: &str, text: &str, sets: &[String]) -> Self {
         let mut source = Source { passages: Vec::new() };
@@ -68,7 +68,7 @@ impl Source {
         self.passages.push(Passage { path, padded, start });
     }
 
-    /// The error `problem` with the value of `key` at `span`.
+    /// Makes the error `problem` with the value of `key` at `span`.
     pub fn error(
         &self,
         key: &str,
@@ -90,7 +90,7 @@ impl Source {
         })
     }
 
-    /// All passages as one table.
+    /// Merges all passages into one table.
     ///
     /// Errors: [`SceneError`] for what is no TOML, or no `KEY=VALUE`.
     pub fn table(&self) -> Result<Spanned<DeTable<'_>>, Box<SceneError>> {
@@ -202,12 +202,12 @@ impl Source {
     }
 }
 
-/// A word that TOML would want in quotes.
+/// Tells whether this is a word that TOML would want in quotes.
 fn is_word(text: &str) -> bool {
     !text.trim().is_empty() && !text.contains(['"', '\'', '[', '{', '=', '\n'])
 }
 
-/// The path of `name` in the table `parent`.
+/// Gives the path of `name` in the table `parent`.
 pub fn join(parent: &str, name: &str) -> String {
     if parent.is_empty() { name.to_string() } else { format!("{parent}.{name}") }
 }

@@ -11,14 +11,14 @@ use toml::de::{DeTable, DeValue};
 
 const MISSING: &str = "this key is missing";
 
-/// A scene's values, each of the kind that its key says.
+/// This holds a scene's values, each of the kind that its key says.
 pub struct Values {
     source: Source,
     /// By path, with the entries of lists counted: `probe[0].name`.
     found: BTreeMap<String, (Value, Range<usize>)>,
 }
 
-/// A side of the box that a scene names.
+/// A named side is a side of the box that a scene has a key for.
 pub struct NamedSide {
     /// Its path, as `boundary.left`.
     pub path: String,
@@ -53,12 +53,12 @@ impl Values {
         Ok(values)
     }
 
-    /// The error `problem` with the value of `key`, wherever it was written.
+    /// Makes the error `problem` with the value of `key`, wherever it was written.
     pub fn error(&self, key: &str, problem: impl Into<String>) -> Box<SceneError> {
         self.error_at(key, key, problem)
     }
 
-    /// The error `problem` with `key`, shown at the value of another key.
+    /// Makes the error `problem` with `key`, shown at the value of another key.
     pub fn error_at(&self, key: &str, other: &str, problem: impl Into<String>) -> Box<SceneError> {
         let span = self.found.get(other).map_or(0..0, |(_, span)| span.clone());
         self.source.error(key, span, problem)
@@ -68,12 +68,12 @@ impl Values {
         self.found.contains_key(path)
     }
 
-    /// True for a value that is one word where it could be a table.
+    /// Tells whether a value is one word where it could be a table.
     pub fn is_word(&self, path: &str) -> bool {
         matches!(self.value(path), Some(Value::Word(_)))
     }
 
-    /// The paths of the entries of a list.
+    /// Lists the paths of the entries of a list.
     pub fn entries(&self, list: &str) -> Vec<String> {
         let length = match self.value(list) {
             Some(Value::List(length)) => *length,
@@ -82,7 +82,7 @@ impl Values {
         (0..length).map(|n| format!("{list}[{n}]")).collect()
     }
 
-    /// Number of axes.
+    /// Counts the axes.
     pub fn dimension(&self) -> usize {
         match self.value("body.length") {
             Some(Value::Numbers(list)) => list.len(),
@@ -90,7 +90,7 @@ impl Values {
         }
     }
 
-    /// The sides that stand in a table, in the order of axes.
+    /// Lists the sides that stand in a table, in the order of axes.
     ///
     /// Errors: [`SceneError`] for a side of an axis that the scene does not have.
     pub fn sides(&self, table: &str) -> Result<Vec<NamedSide>, Box<SceneError>> {
@@ -107,7 +107,7 @@ impl Values {
         Ok(sides)
     }
 
-    /// The components that stand in a table, as path and axis.
+    /// Lists the components that stand in a table, as path and axis.
     ///
     /// Errors: [`SceneError`] for an axis that the scene does not have.
     pub fn components(&self, table: &str) -> Result<Vec<(String, usize)>, Box<SceneError>> {
@@ -124,7 +124,7 @@ impl Values {
         Err(self.error(path, format!("the scene has {has}, and this names another")))
     }
 
-    /// A text, a name, or one of the words of a choice.
+    /// Gives a text, a name, or one of the words of a choice.
     pub fn word(&self, path: &str) -> Result<&str, Box<SceneError>> {
         match (self.value(path), without(path)) {
             (Some(Value::Word(word)), _) => Ok(word),
@@ -133,7 +133,7 @@ impl Values {
         }
     }
 
-    /// What the chosen word stands for.
+    /// Gives what the chosen word stands for.
     pub fn choose<T: Copy>(
         &self,
         path: &str,
@@ -160,7 +160,7 @@ impl Values {
         }
     }
 
-    /// A number of which the rest of the scene asks that it is `good`.
+    /// Gives a number of which the rest of the scene asks that it is `good`.
     pub fn number_if(
         &self,
         path: &str,
@@ -178,7 +178,7 @@ impl Values {
         }
     }
 
-    /// One number for each axis.
+    /// Gives one number for each axis.
     pub fn axes(&self, path: &str) -> Result<Vec<f64>, Box<SceneError>> {
         match (self.value(path), without(path)) {
             (Some(Value::Numbers(list)), _) => self.one_for_each_axis(path, list),
@@ -187,7 +187,7 @@ impl Values {
         }
     }
 
-    /// One number for each axis, of which the rest of the scene asks that all are `good`.
+    /// Gives one number for each axis, of which the rest of the scene asks that all are `good`.
     pub fn axes_if(
         &self,
         path: &str,
@@ -200,7 +200,7 @@ impl Values {
         }
     }
 
-    /// One whole number for each axis.
+    /// Gives one whole number for each axis.
     pub fn wholes(&self, path: &str) -> Result<Vec<usize>, Box<SceneError>> {
         match self.value(path) {
             Some(Value::Wholes(list)) => self.one_for_each_axis(path, list),
@@ -282,12 +282,12 @@ fn unknown(source: &Source, parent: &str, name: &str, span: Range<usize>) -> Box
     error
 }
 
-/// What holds without the key at `path`.
+/// Says what holds without the key at `path`.
 fn without(path: &str) -> Without {
     keys::find(path).map_or(Without::Refused, |key| key.without)
 }
 
-/// A number with its noun, as "1 axis" or "2 entries".
+/// Writes a number with its noun, as "1 axis" or "2 entries".
 pub fn counted(n: usize, word: &str) -> String {
     match (n, word) {
         (1, _) => format!("1 {word}"),

@@ -9,7 +9,7 @@ use crate::method::exact::riemann::{Bar, End, Patch};
 use crate::scene::fault::Fault;
 use crate::scene::{Motion, Scene, wave_speed};
 
-/// The exact solution of `scene`.
+/// Finds the exact solution of `scene`.
 ///
 /// Errors: [`Fault::NoExact`] with the reason.
 pub fn exact(scene: &Scene) -> Result<Exact, Fault> {
@@ -44,7 +44,7 @@ pub fn exact(scene: &Scene) -> Result<Exact, Fault> {
     Ok(Exact::Linear { thrown, vibration, forced })
 }
 
-/// What the loads of a scene do to the bar; `None` without loads.
+/// Gives what the loads of a scene do to the bar; `None` without loads.
 fn forced(scene: &Scene, ends: [End; 2], c: f64) -> Option<Forced> {
     if scene.body_force.is_none() && scene.traction.is_none() {
         return None;

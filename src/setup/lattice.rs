@@ -8,7 +8,7 @@ use crate::method::quadrature::points;
 use crate::scene::{Ball, Scene};
 use nalgebra::SVector;
 
-/// Where a particle stands at the start.
+/// A place is where a particle stands at the start, with its share of the body.
 pub struct Place<const D: usize> {
     /// From the body's lower corner (m).
     pub x: SVector<f64, D>,
@@ -20,7 +20,7 @@ pub struct Place<const D: usize> {
     pub volume: f64,
 }
 
-/// The particles of a scene: some in every cell of the body's box; with balls
+/// Lists the places of a scene's particles: some in every cell of the body's box; with balls
 /// those inside one of them.
 pub fn places<const D: usize>(scene: &Scene) -> Vec<Place<D>> {
     let per_cell: [usize; D] = std::array::from_fn(|d| scene.grid.particles_per_cell[d]);
@@ -51,7 +51,7 @@ pub fn places<const D: usize>(scene: &Scene) -> Vec<Place<D>> {
     odometer(along).map(place).filter(material).collect()
 }
 
-/// The nodes at the corners of all cells that hold a particle, in ascending order.
+/// Lists the nodes at the corners of all cells that hold a particle, in ascending order.
 pub fn corners<const D: usize>(grid: &Grid<D>, places: &[Place<D>]) -> Vec<usize> {
     let mut held = vec![false; grid.nodes()];
     for at in places.iter().filter_map(|place| grid.locate(&place.x)) {
@@ -62,7 +62,7 @@ pub fn corners<const D: usize>(grid: &Grid<D>, places: &[Place<D>]) -> Vec<usize
     (0..held.len()).filter(|I| held[*I]).collect()
 }
 
-/// The loads that the scene declares, tied to its particles.
+/// Ties the loads that the scene declares to its particles.
 pub fn loads<const D: usize>(scene: &Scene, places: &[Place<D>]) -> Option<Loads<D>> {
     let uniform = scene.body_force.as_ref().map(|body| BodyForce::Uniform {
         b: SVector::from_fn(|d, _| body.acceleration[d]),

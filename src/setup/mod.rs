@@ -14,7 +14,7 @@ use crate::method::model::{Model, State};
 use crate::scene::{Motion, Scene};
 use nalgebra::SVector;
 
-/// The model of a scene with D axes.
+/// Makes the model of a scene with D axes.
 pub fn model<const D: usize>(scene: &Scene) -> Model<D> {
     let grid = grid::<D>(scene);
     let places = lattice::places(scene);
@@ -49,9 +49,8 @@ fn grid<const D: usize>(scene: &Scene) -> Grid<D> {
     )
 }
 
-/// The state at k = 0: particles in every cell of the body, each with its
-/// share of the cell's mass (unit thickness in the missing directions), moving
-/// as its region says.
+/// Makes the state at k = 0: particles in every cell of the body, each with its share of the
+/// cell's mass (unit thickness in the missing directions), moving as its region says.
 pub fn initial_state<const D: usize>(model: &Model<D>, scene: &Scene) -> State<D> {
     let places = lattice::places::<D>(scene);
     let rho = scene.body.density;
@@ -79,7 +78,7 @@ pub fn initial_state<const D: usize>(model: &Model<D>, scene: &Scene) -> State<D
     State::new(model, particle, nodes)
 }
 
-/// Nodes on or beyond a side with fixed components.
+/// Lists the nodes on or beyond a side with the components that are fixed there.
 fn fixed<const D: usize>(scene: &Scene, grid: &Grid<D>) -> Vec<(usize, usize)> {
     let mut fixed = Vec::new();
     for I in 0..grid.nodes() {

@@ -11,7 +11,7 @@ use crate::scene::DYKA;
 use crate::scene::fault::Fault;
 use std::path::Path;
 
-/// The values of γ.
+/// The study takes these values of γ.
 pub const GAMMAS: [f64; 12] = [0.3, 0.5, 0.8, 1.0, 1.4, 1.8, 2.5, 4.0, 6.0, 10.0, 20.0, 50.0];
 
 /// A way is what is varied beside γ: some `KEY=VALUE` and c Δt / h.

@@ -11,7 +11,7 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-/// Each configuration is timed as often.
+/// Each configuration is timed as often as this.
 pub const PASSES: usize = 3;
 
 /// A timed run is one pass of a configuration.

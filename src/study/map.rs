@@ -8,8 +8,8 @@ use crate::run::stability;
 use crate::run::table::{csv, shortest};
 use crate::scene::fault::Fault;
 
-/// A run that is asked whether it grows takes as many steps, and the limit that it brackets
-/// is known to this width.
+/// A run that is asked whether it grows takes so many steps, and the limit is bracketed to this
+/// width, relative to itself.
 const STEPS: usize = 1500;
 const TOLERANCE: f64 = 2e-3;
 

@@ -6,7 +6,7 @@ use super::map;
 use crate::run::stability;
 use crate::scene::fault::Fault;
 
-/// The time step of a configuration is given as c Δt / h.
+/// The time step of a configuration is given as a number c Δt / h.
 #[derive(Clone, Copy)]
 enum Step {
     /// Common to all.

@@ -4,8 +4,8 @@ use crate::method::grid::odometer;
 use nalgebra::SVector;
 
 // ANCHOR: bins
-/// Nodes sorted into equal boxes, so that those near a point are found without
-/// looking at the others. Lengths are in units of h along each axis.
+/// Bins are equal boxes of nodes, so that those near a point are found without looking at the
+/// others. Lengths are in units of h along each axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bins<const D: usize> {
     low: SVector<f64, D>,
@@ -69,7 +69,7 @@ impl<const D: usize> Bins<D> {
         }
     }
 
-    /// The number of a coordinate's box along axis d; the first or last box for one
+    /// Gives the number of a coordinate's box along axis d; the first or last box for one
     /// outside.
     fn along(&self, d: usize, x: f64) -> usize {
         ((x - self.low[d]) * self.per_length[d]).clamp(0.0, self.count[d] as f64 - 1.0) as usize
@@ -83,7 +83,7 @@ impl<const D: usize> Bins<D> {
         self.number(std::array::from_fn(|d| self.along(d, x[d])))
     }
 
-    /// The nodes of all boxes that a cube of half width `reach` around x meets.
+    /// Lists the nodes of all boxes that a cube of half width `reach` around x meets.
     pub fn near(&self, x: &SVector<f64, D>, reach: f64) -> impl Iterator<Item = usize> {
         let low: [usize; D] = std::array::from_fn(|d| self.along(d, x[d] - reach));
         let count: [usize; D] = std::array::from_fn(|d| self.along(d, x[d] + reach) - low[d] + 1);

@@ -4,8 +4,7 @@
 use super::tensor::Line;
 
 // ANCHOR: bspline
-/// N and dN/dξ of the quadratic B-spline with knots at ±½ and ±3/2,
-/// ξ = (x − x_I)/h.
+/// Gives N and dN/dξ of the quadratic B-spline with knots at ±½ and ±3/2, ξ = (x − x_I)/h.
 pub fn quadratic(xi: f64) -> (f64, f64) {
     let (distance, sign) = (libm::fabs(xi), if xi < 0.0 { -1.0 } else { 1.0 });
     if distance <= 0.5 {
@@ -18,7 +17,7 @@ pub fn quadratic(xi: f64) -> (f64, f64) {
     }
 }
 
-/// Along one axis with `cells` cells: the nearest node and its neighbours.
+/// Makes the line of one axis with `cells` cells: the nearest node and its neighbours.
 ///
 /// Within half a cell of an end of the grid one neighbour is missing. Its part
 /// is carried by linear extrapolation, 2 to the end node and −1 to the next,

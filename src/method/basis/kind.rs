@@ -2,7 +2,7 @@
 
 use super::support::radius;
 
-/// The basis of a scene.
+/// A basis is a family of shape functions; a scene has one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Basis {
     /// Piecewise (multi)linear functions of the grid's cells.

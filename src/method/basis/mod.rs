@@ -57,7 +57,8 @@ pub fn fill_from_grid<const D: usize>(
 }
 // ANCHOR_END: tabulate
 
-/// Particle p at `x_p` (m) stands outside the grid, reaches beyond it, or nowhere.
+/// Names a particle p that stands at `x_p` (m) outside the grid, reaches beyond it, or has a
+/// place that is no number.
 fn outside<const D: usize>(p: usize, x_p: &SVector<f64, D>) -> Breakdown {
     match x_p.iter().all(|x| x.is_finite()) {
         true => Breakdown::LeftGrid { particle: p, position: x_p.iter().copied().collect() },
@@ -65,7 +66,8 @@ fn outside<const D: usize>(p: usize, x_p: &SVector<f64, D>) -> Breakdown {
     }
 }
 
-/// The one-dimensional functions of a tensor-product basis along each axis.
+/// Makes the functions of one coordinate of a tensor-product basis along each axis; `None`
+/// where the particle reaches beyond the grid.
 fn lines<const D: usize>(basis: &Basis, grid: &Grid<D>, at: &Located<D>) -> Option<[Line; D]> {
     let mut lines = [Line::default(); D];
     for d in 0..D {

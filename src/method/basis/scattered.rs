@@ -9,12 +9,12 @@ use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
 use nalgebra::SVector;
 
-/// How often the search radius is widened for a particle that its nodes do not
-/// enclose, and by how much.
+/// The search radius of a particle that its nodes do not enclose is widened as often, each time
+/// by this factor.
 const WIDENINGS: usize = 6;
 const WIDER: f64 = 1.5;
 
-/// Where the nodes stand.
+/// Places tell where the nodes stand.
 #[derive(Clone, Copy)]
 pub struct Places<'a, const D: usize> {
     /// (m).
@@ -118,7 +118,7 @@ fn see<const D: usize>(
     lme.set_offsets(|a| (nodes[nearest] - nodes[a]).component_div(h));
 }
 
-/// What a point sees: node, N (–) and ∇N (1/m).
+/// These are the values at a point, for each node that it sees: node, N (–) and ∇N (1/m).
 pub type NodeValues<const D: usize> = Vec<(usize, f64, SVector<f64, D>)>;
 
 /// Evaluates local max-ent at one point among a list of nodes: those within R of x, as

@@ -1,10 +1,10 @@
-//! What a basis keeps from table to table, so that nothing is allocated anew.
+//! A basis keeps its working space from table to table, so that nothing is allocated anew.
 
 use super::bins::Bins;
 use super::lme::Lme;
 use crate::method::cost::Cost;
 
-/// Working space of local max-ent; the other bases need none.
+/// This is the working space of local max-ent; the other bases need none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scratch<const D: usize> {
     pub(super) lme: Lme<D>,
@@ -15,7 +15,7 @@ pub struct Scratch<const D: usize> {
 }
 
 impl<const D: usize> Scratch<D> {
-    /// Candidates, exponentials and Newton iterations so far.
+    /// Counts candidates, exponentials and Newton iterations so far.
     pub fn cost(&self) -> Cost {
         self.cost + self.lme.cost()
     }

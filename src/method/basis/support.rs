@@ -6,14 +6,14 @@ use crate::method::grid::{Grid, Located};
 use nalgebra::SVector;
 
 // ANCHOR: lme_support
-/// The cut-off radius R/h = √(−ln tol/γ): beyond it exp(−γ|ξ|²) < tol. A
-/// tolerance of 0 cuts nothing.
+/// Gives the cut-off radius R/h = √(−ln tol/γ): beyond it exp(−γ|ξ|²) < tol. A tolerance of 0
+/// cuts nothing.
 pub fn radius(gamma: f64, cutoff: f64) -> f64 {
     libm::sqrt(-libm::log(cutoff) / gamma)
 }
 // ANCHOR_END: lme_support
 
-/// How wide local max-ent is.
+/// A width says how far local max-ent reaches.
 #[derive(Clone, Copy)]
 pub struct Width {
     /// γ = βh².
@@ -56,7 +56,7 @@ pub fn row_on_grid<const D: usize>(
 }
 // ANCHOR_END: lme_grid
 
-/// The λ h that the two nodes of the cell along each axis alone would give: with it their
+/// Gives the λ h that the two nodes of the cell along each axis alone would have: with it their
 /// weights are 1 − s and s.
 fn of_two_nodes<const D: usize>(gamma: f64, xi: &SVector<f64, D>) -> SVector<f64, D> {
     SVector::from_fn(|d, _| {

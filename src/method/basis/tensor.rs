@@ -5,8 +5,8 @@ use crate::method::continuum::shape::Shape;
 use crate::method::grid::{Grid, odometer};
 use nalgebra::SVector;
 
-/// The functions of one axis at one coordinate: for each node the index along
-/// the axis, N (–) and dN/dx (1/m). At most four.
+/// A line holds the functions of one axis at one coordinate: for each node the index along the
+/// axis, N (–) and dN/dx (1/m). At most four.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Line {
     len: usize,

@@ -4,10 +4,10 @@
 use super::tensor::Line;
 
 // ANCHOR: ugimp
-/// N and dN/dξ of the hat 1 − |ξ| averaged over [ξ − l, ξ + l], with
-/// ξ = (x − x_I)/h and l = l_p/h, 0 < l ≤ ½.
+/// Gives N and dN/dξ of the hat 1 − |ξ| averaged over [ξ − l, ξ + l], with ξ = (x − x_I)/h and
+/// l = l_p/h, 0 < l ≤ ½.
 ///
-/// A parabola over the node, |ξ| < l; the hat's own flank; a parabola at its
+/// It is a parabola over the node, |ξ| < l; then the hat's own flank; then a parabola at its
 /// foot, up to |ξ| = 1 + l. The slope is continuous.
 pub fn averaged_hat(xi: f64, l: f64) -> (f64, f64) {
     let (distance, sign) = (libm::fabs(xi), if xi < 0.0 { -1.0 } else { 1.0 });
@@ -23,9 +23,9 @@ pub fn averaged_hat(xi: f64, l: f64) -> (f64, f64) {
     }
 }
 
-/// Along one axis with `cells` cells: the two or three nodes whose averaged hat
-/// is not zero. `None` when the particle reaches beyond the grid, where a node
-/// is missing and ΣN would fall below 1.
+/// Makes the line of one axis with `cells` cells: the two or three nodes whose averaged hat is
+/// not zero. `None` when the particle reaches beyond the grid, where a node is missing and ΣN
+/// would fall below 1.
 pub fn line(cell: usize, cells: usize, xi: f64, l: f64, h: f64) -> Option<Line> {
     let mut line = Line::default();
     for offset in -1..=2 {

@@ -23,7 +23,7 @@ pub fn symmetric_part<const D: usize>(grad_v: &SMatrix<f64, D, D>) -> SMatrix<f6
 // ANCHOR_END: strain_rate
 
 // ANCHOR: elastic
-/// This is the classical isotropic elasticity tensor D of (3), by its Lamé moduli.
+/// The elastic law is the isotropic elasticity tensor D of (3), by its Lamé moduli.
 ///
 /// With D = 2 this is plane strain. With D = 1 it is uniaxial *strain*: the
 /// modulus is λ + 2μ, which for ν = 0 is Young's modulus E, the modulus of a

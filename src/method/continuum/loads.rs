@@ -11,7 +11,7 @@ pub struct Loads<const D: usize> {
     pub traction: Option<Traction<D>>,
 }
 
-/// b_p, force per mass (m/s²).
+/// A body force is b_p, a force per mass (m/s²).
 #[derive(Clone, Debug, PartialEq)]
 pub enum BodyForce<const D: usize> {
     /// b min(t/T, 1).

@@ -19,7 +19,7 @@ const LIGHT: f64 = 0.25;
 /// A pivot below this share of its diagonal entry counts as zero.
 const SINGULAR: f64 = 1e-12;
 
-/// Velocities and accelerations of the nodes are solved with one of two mass matrices.
+/// A mass matrix gives the nodes their velocities and accelerations; there are two.
 #[derive(Clone, Debug)]
 pub enum MassMatrix<const D: usize> {
     /// m_I of (18), which the nodes hold themselves.
@@ -254,7 +254,7 @@ impl<const D: usize> ConsistentMass<D> {
     // ANCHOR_END: solve
 }
 
-/// Says where m_IJ stands among the values of a matrix with this pattern.
+/// Finds the place of m_IJ among the values of a matrix with this pattern.
 fn place(pattern: &SparsityPattern, I: usize, J: usize) -> Option<usize> {
     pattern.lane(J).binary_search(&I).ok().map(|n| pattern.major_offsets()[J] + n)
 }

@@ -8,7 +8,8 @@ use crate::method::cost::Cost;
 use nalgebra::{SMatrix, SVector};
 
 // ANCHOR: particles
-/// Particles are the material points: they hold all that is remembered between steps.
+/// Particles are the material points: they hold what is remembered of the material from step to
+/// step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Particles<const D: usize> {
     /// m_p, mass (kg).
@@ -34,8 +35,8 @@ pub struct Particles<const D: usize> {
 // ANCHOR_END: particles
 
 // ANCHOR: nodes
-/// Nodes are scratch paper, wiped in step 2 of every time step. With OTM they are the
-/// body's own and carry its motion.
+/// Nodes are scratch paper: before they are filled anew in a time step they are wiped. With OTM
+/// they are the body's own and carry its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes<const D: usize> {
     /// m_I, lumped mass (kg).
@@ -73,8 +74,8 @@ impl<const D: usize> Particles<D> {
         Carriers { m: &self.m, x: &self.x, v: &self.v }
     }
 
-    /// One particle carries so many bytes of state: 48 in 1D, where every tensor
-    /// is a single number.
+    /// Every particle carries so many bytes of state, whatever the scheme: 48 in 1D, where
+    /// every tensor is a single number.
     pub const BYTES: usize = 2 * size_of::<f64>()
         + 2 * size_of::<SVector<f64, D>>()
         + 2 * size_of::<SMatrix<f64, D, D>>();

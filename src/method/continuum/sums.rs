@@ -19,7 +19,7 @@ pub fn lumped_mass<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>,
 // ANCHOR_END: lumped_mass
 
 // ANCHOR: momentum
-/// The particles bring their momentum: p_I += Σ_p m_p v_p N_Ip  (kg m/s).
+/// The particles bring their momentum to the nodes: p_I += Σ_p m_p v_p N_Ip  (kg m/s).
 pub fn momentum<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, shape: &Shape<D>) {
     for (I, p, N_Ip, _) in shape.pairs() {
         node.p[I] += particle.v[p] * (particle.m[p] * N_Ip);

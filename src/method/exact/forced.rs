@@ -7,7 +7,7 @@
 use super::fields::Fields;
 use super::riemann::{End, Family};
 
-/// A load that grows linearly to its value over the time T, and stays.
+/// A load grows linearly to its value over the time T, and stays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load {
     pub value: f64,
@@ -37,7 +37,7 @@ impl Load {
     // ANCHOR_END: ramp_integrals
 }
 
-/// A linear elastic bar on 0 ≤ x ≤ L, at rest at t = 0, under loads.
+/// A forced bar is linear elastic on 0 ≤ x ≤ L, at rest at t = 0, and under loads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forced {
     /// L (m).

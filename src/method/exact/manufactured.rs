@@ -35,8 +35,8 @@ impl Manufactured {
         }
     }
 
-    /// The force that keeps it going is b = ∂²u/∂t² − (∂σ/∂X)/ρ_0 = ω² u (1/F − 1)
-    /// (m/s²), since φ'' = −k² φ.
+    /// Gives the force that keeps it going, b = ∂²u/∂t² − (∂σ/∂X)/ρ_0 = ω² u (1/F − 1) (m/s²),
+    /// since φ'' = −k² φ.
     pub fn body_force(&self, X: f64, t: f64) -> f64 {
         let omega = self.c * self.mode.k;
         let u = self.amplitude * self.mode.shape(X) * libm::sin(omega * t);

@@ -13,7 +13,7 @@ use manufactured::Manufactured;
 use mode::Vibration;
 use riemann::Bar;
 
-/// The exact solution of a scene.
+/// A scene has one of these exact solutions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Exact {
     /// The elastic bar: thrown in patches or in a mode, with loads or without.

@@ -45,7 +45,7 @@ pub struct Vibration {
 
 impl Vibration {
     // ANCHOR: vibration
-    /// The fields are u = V/ω φ sin ωt, v = V φ cos ωt, σ = E V/ω φ' sin ωt, with ω = ck.
+    /// Gives the fields u = V/ω φ sin ωt, v = V φ cos ωt, σ = E V/ω φ' sin ωt, with ω = ck.
     pub fn at(&self, x: f64, t: f64) -> Fields {
         let omega = self.c * self.mode.k;
         let amplitude = self.velocity / omega * libm::sin(omega * t);

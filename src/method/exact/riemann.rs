@@ -8,7 +8,7 @@
 use super::fields::Fields;
 use nalgebra::{Matrix2, Vector2};
 
-/// What an end of the bar does to a wave.
+/// An end of the bar turns waves back in one of two ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// v = 0: by (59) R^I = −R^II.
@@ -17,7 +17,7 @@ pub enum End {
     Free,
 }
 
-/// Which of the two invariants.
+/// There are two invariants, one for each direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
     /// R^I of (57), travels at +c.
@@ -26,7 +26,7 @@ pub enum Family {
     II,
 }
 
-/// A stretch of the bar that is thrown with one velocity; the rest is at rest.
+/// A patch is a stretch of the bar that is thrown with one velocity; the rest is at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     /// (m).
@@ -37,7 +37,7 @@ pub struct Patch {
     pub velocity: f64,
 }
 
-/// An elastic bar on 0 ≤ x ≤ L, free of stress at t = 0.
+/// The bar is elastic, lies on 0 ≤ x ≤ L, and is free of stress at t = 0.
 ///
 /// On a front, where v and σ jump, the value is that of one of the two sides.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,7 +93,7 @@ impl Family {
 }
 // ANCHOR_END: reflect
 
-/// One straight piece of a characteristic, followed back in time.
+/// A piece is a straight part of a characteristic, followed back in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Piece {
     family: Family,

@@ -13,7 +13,7 @@ use nalgebra::SVector;
 pub const STEPS: usize = 7;
 
 // ANCHOR: alpha_parameters
-/// The parameters by ρ_b, the spectral radius at the bifurcation, 0 to 1.
+/// The parameters follow from ρ_b, the spectral radius at the bifurcation, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
     /// α_m = (2ρ_b − 1) / (1 + ρ_b).
@@ -53,7 +53,7 @@ pub fn start<const D: usize>(
 // ANCHOR_END: generalized_alpha_start
 
 // ANCHOR: generalized_alpha
-/// Step `n` of the scheme, 1 to 7, in the time step from k to k+1; loads are those of k,
+/// Takes step `n` of the scheme, 1 to 7, in the time step from k to k+1; loads are those of k,
 /// at `t` (s).
 ///
 /// a_I^k is the particles' acceleration, mapped like the velocity, and the

@@ -1,4 +1,5 @@
-//! Time integration (§4): the nine steps, and the schemes that order them.
+//! Time integration (§4): the steps of the Algorithm, and the schemes, each a function of the
+//! number of its step.
 
 pub mod euler;
 pub mod generalized_alpha;
@@ -11,9 +12,9 @@ use super::choice::{Integrator, Method};
 use super::model::{Model, State};
 
 // ANCHOR: advance
-/// Prepares what a scheme needs at k = 0: with Newmark nodal values, by one time step with
-/// Δt = 0, in which nothing moves; with generalized-α the acceleration of loads
-/// that act at once; with the others nothing.
+/// Prepares what a scheme needs at k = 0: with Newmark's method nodal values, by one time step
+/// with Δt = 0, in which nothing moves; with generalized-α the acceleration of loads that act
+/// at once; with OTM the nodes' masses, velocities and forces; with the others nothing.
 ///
 /// `after` sees the state after each step of Newmark's, and after OTM's start as step 0.
 pub fn start<const D: usize>(
@@ -48,6 +49,7 @@ pub fn advance<const D: usize>(
     steps::finite(&state.particle)
 }
 
+/// Takes all steps of one time step, from the first to the last.
 fn all_steps<const D: usize>(
     state: &mut State<D>,
     model: &Model<D>,

@@ -41,7 +41,7 @@ pub fn start<const D: usize>(state: &mut State<D>, model: &Model<D>) -> Result<(
 // ANCHOR_END: otm_start
 
 // ANCHOR: otm
-/// Step `n` of OTM, 1 to 7, in the time step from k to k+1 that ends at `t` (s).
+/// Takes step `n` of OTM, 1 to 7, in the time step from k to k+1 that ends at `t` (s).
 pub fn step<const D: usize>(
     n: usize,
     state: &mut State<D>,

@@ -1,5 +1,5 @@
-//! The steps of the paper's Algorithm, one function each: outputs first,
-//! inputs after, so that a signature reads like its equation.
+//! The steps of the paper's Algorithm and of the other schemes, one function each: outputs
+//! first, inputs after, so that a signature reads like its equation.
 
 use crate::method::basis::{self, Scratch};
 use crate::method::breakdown::Breakdown;
@@ -12,13 +12,15 @@ use crate::method::model::{Fixed, Model};
 use crate::method::reading::StepEight;
 use nalgebra::SVector;
 
-/// γ of Newmark's method: with β = 0 the explicit central difference.
+/// This is γ of Newmark's method, which with β = 0 is the explicit central difference.
 pub const NEWMARK_GAMMA: f64 = 0.5;
 
 // ANCHOR: predict
 /// Step 1, the predictor, moves the particles with the nodal values of k:
 /// (27) x_p += Δt Σ_I p_I N_Ip / m_I + ½ Δt² Σ_I f_I N_Ip / m_I
 /// and (28) v_p += (1 − γ) Δt Σ_I f_I N_Ip / m_I.
+///
+/// p_I and f_I are here m_I v_I and m_I a_I, what the mass matrix has made of them.
 pub fn predict<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -49,7 +51,7 @@ pub fn discard<const D: usize>(node: &mut Nodes<D>) {
 // ANCHOR_END: discard
 
 // ANCHOR: tabulate_step
-/// Between steps 2 and 3 N_Ip and ∇N_Ip are tabulated at the particles' new positions.
+/// Step 2 also tabulates N_Ip and ∇N_Ip at the particles' new positions.
 ///
 /// Errors: [`Breakdown::LeftGrid`]; [`Breakdown::NotFinite`] for a position that
 /// is not a number; [`Breakdown::NoBasis`] where local max-ent has no solution.
@@ -141,7 +143,7 @@ pub fn update_density<const D: usize>(particle: &mut Particles<D>) -> Result<(),
 // ANCHOR_END: update_density
 
 // ANCHOR: update_stress
-/// (3) updates the stress, between steps 6 and 7: σ_p += D : Δε_p  (Pa).
+/// Step 6 also updates the stress, by (3): σ_p += D : Δε_p  (Pa).
 pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &LinearElastic) {
     for p in 0..particle.len() {
         particle.sigma[p] += law.stress_increment(&particle.d_eps[p]);

@@ -1,8 +1,8 @@
-//! Why local max-ent cannot serve a point.
+//! Local max-ent cannot serve every point, and says why.
 
 use thiserror::Error;
 
-/// Why there is no λ.
+/// A failure says why there is no λ.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Failure {
     /// x is not in the convex hull of the nodes, or the nodes span no volume.

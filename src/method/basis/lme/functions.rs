@@ -7,7 +7,7 @@ use crate::method::continuum::law::{applied, outer};
 use crate::method::cost::Cost;
 use nalgebra::{SMatrix, SVector};
 
-/// The shape functions at one point, an entry for each node that it sees.
+/// These are the shape functions at one point, an entry for each node that it sees.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Functions<const D: usize> {
     /// p_I, that is N_I.

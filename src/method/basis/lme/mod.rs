@@ -35,8 +35,8 @@ use nalgebra::SVector;
 use seen::Seen;
 use weights::Weights;
 
-/// Local max-ent at one point: the nodes it sees, and buffers; keep it, so that nothing is
-/// allocated.
+/// Local max-ent at one point works with the nodes that it sees and with buffers, which are
+/// kept, so that nothing is allocated.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lme<const D: usize> {
     seen: Seen<D>,
@@ -70,12 +70,12 @@ impl<const D: usize> Lme<D> {
         }
     }
 
-    /// The number of nodes that the point sees.
+    /// Counts the nodes that the point sees.
     pub fn nodes(&self) -> usize {
         self.seen.I.len()
     }
 
-    /// The exponentials and Newton iterations so far.
+    /// Counts the exponentials and Newton iterations so far.
     pub fn cost(&self) -> Cost {
         self.weights.cost + self.functions.cost
     }

@@ -3,13 +3,13 @@
 use super::failure::Failure;
 use nalgebra::{SMatrix, SVector};
 
-/// Steps after which Newton's method is given up.
+/// After so many steps Newton's method is given up.
 const MOST_STEPS: usize = 40;
 
-/// |r| below which λ is found: some ten times what rounding leaves of it.
+/// λ is found when |r| is below this: some ten times what rounding leaves of it.
 const SMALL: f64 = 1e-15;
 
-/// Local max-ent at one point.
+/// A solution is λ at one point, with the shape functions that follow from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution<const D: usize> {
     /// λ (–, scaled by h).

@@ -5,14 +5,14 @@ use super::seen::{Seen, separates};
 use super::weights::{Moments, Weights, moments};
 use nalgebra::SVector;
 
-/// Iterations after which the search for λ is given up.
+/// After so many iterations the search for λ is given up.
 const MOST_ITERATIONS: usize = 200;
 
-/// Largest relative change of a p_I in the last step of Newton's method. The
+/// A step of Newton's method is the last when no p_I changes by more, relative to itself. The
 /// step is then applied to the p_I themselves; what is left is its square.
 const CLOSE: f64 = 1e-8;
 
-/// Largest relative change of a p_I by a step that is taken without a question.
+/// A step is taken without a question when no p_I changes by more, relative to itself.
 const NEAR: f64 = 0.5;
 
 /// Finds λ h (–) and the weights there, with Newton's method from `starts`.
@@ -141,7 +141,7 @@ fn raise_gamma<const D: usize>(
     Ok(lambda)
 }
 
-/// Says how large |r| still is after so many iterations.
+/// Says how large |r| still is after so many `iterations`.
 fn not_converged<const D: usize>(now: &Moments<D>, iterations: usize) -> Failure {
     Failure::NotConverged { residual: libm::sqrt(now.r.dot(&now.r)), iterations }
 }

@@ -3,11 +3,11 @@
 use super::failure::Failure;
 use nalgebra::{SMatrix, SVector};
 
-/// Axes along which x lies on a flat side of the hull, with the direction to
-/// the inside: ±1, else 0.
+/// Faces tell for each axis whether x lies on a flat side of the hull that is normal to it: ±1
+/// for the direction to the inside, else 0.
 pub type Faces<const D: usize> = [f64; D];
 
-/// The nodes that a point sees. Those that share its weight are found by [`share`].
+/// This holds the nodes that a point sees. Those that share its weight are found by [`share`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen<const D: usize> {
     /// The numbers I of the nodes.

@@ -6,10 +6,10 @@ use crate::method::continuum::law::outer;
 use crate::method::cost::Cost;
 use nalgebra::{SMatrix, SVector};
 
-/// Up to this many cells the exponentials are factorised on a grid.
+/// On a grid the exponentials are factorised up to a distance of so many cells.
 const FEW: usize = 6;
 
-/// The weights of the nodes that share, and what the next ones are made from.
+/// These are the weights of the nodes that share, and what the next ones are made from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Weights {
     /// p_I, which add up to 1.
@@ -24,7 +24,7 @@ pub struct Weights {
     pub cost: Cost,
 }
 
-/// Z, r and J at one μ.
+/// Moments are Z, r and J at one μ.
 pub struct Moments<const D: usize> {
     /// μ = λ − 2γ ξ_0.
     pub mu: SVector<f64, D>,
@@ -42,7 +42,7 @@ pub struct Moments<const D: usize> {
 }
 
 impl<const D: usize> Moments<D> {
-    /// log Z + μ·ξ_0, what the right μ minimises.
+    /// Gives log Z + μ·ξ_0, which the right μ minimises.
     pub fn phi(&self) -> f64 {
         self.largest + libm::log(self.Z) + self.tilt
     }
@@ -98,7 +98,7 @@ fn exponentiated<const D: usize>(
     largest
 }
 
-/// f_I = −γ|a|² + μ·a, axis by axis: near the solution μ_d − γ a_d is the small
+/// Gives f_I = −γ|a|² + μ·a, axis by axis: near the solution μ_d − γ a_d is the small
 /// difference of large numbers that are exact.
 fn exponent<const D: usize>(gamma: f64, mu: &SVector<f64, D>, a: &SVector<f64, D>) -> f64 {
     (0..D).map(|d| (mu[d] - gamma * a[d]) * a[d]).sum()
