@@ -1,4 +1,4 @@
-//! The program `lme-mpm`; see the module `cli`.
+//! This is the program `lme-mpm`; the module `cli` has its commands.
 
 mod cli;
 

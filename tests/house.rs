@@ -215,7 +215,7 @@ fn rooms() -> Vec<Room> {
 #[test]
 fn house_is_on_the_map() {
     let rooms = rooms();
-    let mut table = String::from("room,what it holds,files,uses\n");
+    let mut table = String::from("room,in a sentence,files,uses\n");
     for Room { name, says, files, uses } in &rooms {
         assert!(says.len() > 20 && files.len() > 1, "{name}: {says}");
         let list = |names: &[&str]| names.join(", ");

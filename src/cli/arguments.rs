@@ -1,4 +1,4 @@
-//! What the command line understands.
+//! The command line understands these commands and arguments.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};

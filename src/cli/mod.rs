@@ -1,4 +1,4 @@
-//! The commands of the program: what a user types, and what the terminal shows.
+//! The commands of the program stand here: what a user types, and what the terminal shows.
 
 mod arguments;
 mod studies;
@@ -26,6 +26,7 @@ const BOLD: anstyle::Style = anstyle::Style::new().bold();
 const RED: anstyle::Style =
     anstyle::Style::new().bold().fg_color(Some(anstyle::Color::Ansi(anstyle::AnsiColor::Red)));
 
+/// Does the command that was typed, and tells what went wrong.
 pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         None => built_in(),

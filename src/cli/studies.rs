@@ -1,4 +1,4 @@
-//! The commands that run studies.
+//! These commands run studies.
 
 use super::arguments::TradeArguments;
 use super::terminal::print_bytes;

@@ -1,4 +1,4 @@
-//! Standard input and output.
+//! Standard input is read and standard output written here.
 
 use lme_mpm::scene::fault::Fault;
 use std::io::{Read, Write};

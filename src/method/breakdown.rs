@@ -1,4 +1,4 @@
-//! What can go wrong inside a run, by name.
+//! All that can go wrong inside a run has a name here.
 //!
 //! A step says what happened to which particle or node ([`Breakdown`]); the time loop
 //! adds once when it was ([`BrokenDown`]).

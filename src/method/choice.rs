@@ -1,4 +1,4 @@
-//! The closed sets that a scene chooses from: method, scheme, mass matrix.
+//! A scene chooses from these closed sets: method, scheme, mass matrix.
 
 use super::reading::{StepEight, StressUpdate};
 

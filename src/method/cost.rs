@@ -1,4 +1,4 @@
-//! What a run costs, counted instead of timed: the same on every machine.
+//! The cost of a run is counted instead of timed, and so is the same on every machine.
 //!
 //! What is made holds the count of what it took to make it: the table of shape functions its
 //! rows and pairs, the working space of local max-ent its exponentials, iterations and

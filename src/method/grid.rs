@@ -1,4 +1,4 @@
-//! The background grid: where nodes stand, and which cell holds a point.
+//! The background grid says where nodes stand, and which cell holds a point.
 
 use nalgebra::SVector;
 

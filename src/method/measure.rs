@@ -1,4 +1,4 @@
-//! What is measured on a run (§6): the error (39), energy and momentum.
+//! Measures a run (§6): the error (39), energy and momentum.
 
 use crate::method::continuum::law::LinearElastic;
 use crate::method::continuum::state::{Carriers, Particles};

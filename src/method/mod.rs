@@ -1,4 +1,4 @@
-//! The method: everything that a reader needs to understand the paper, and nothing else.
+//! The method is everything that a reader needs to understand the paper, and nothing else.
 //!
 //! This room knows no scene, no file and no terminal, and compiles alone.
 

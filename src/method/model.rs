@@ -1,4 +1,4 @@
-//! What stays the same from step to step, and what changes.
+//! The model stays the same from step to step, and the state changes.
 
 use super::basis::{Basis, Scratch};
 use super::choice::{Integrator, Mass, Method};

@@ -1,4 +1,4 @@
-//! The whole method in one file: the paper's Algorithm for the elastic bar of §6.
+//! This is the whole method in one file: the paper's Algorithm for the elastic bar of §6.
 //!
 //! Read this file before all others. It has numbers, lists and loops, and the paper's
 //! letters: the index is the subscript, so m_I is `m_I[I]` and x_p is `x_p[p]`. The rest

@@ -1,4 +1,4 @@
-//! Where the particles of a cell stand at the start, and how much of it each one holds.
+//! Says where the particles of a cell stand at the start, and how much of it each one holds.
 
 use super::choice::Method;
 

@@ -1,5 +1,5 @@
-//! Every place where the paper can be read in more than one way, or is
-//! misprinted, as a named type with its evidence.
+//! Every place where the paper can be read in more than one way, or is misprinted, stands here
+//! as a named type with its evidence.
 //!
 //! Notes without a type, because only one reading runs:
 //!
@@ -18,7 +18,7 @@
 //! * **Appendix A** says that the ends radiate; both reflect. See
 //!   [`crate::method::exact::riemann`].
 
-/// Step 8 carries the nodal momentum on, and can be read in two ways: how far?
+/// Step 8 carries the nodal momentum on; how far, can be read in two ways.
 ///
 /// The predictor (27) adds Δt p_I/m_I + ½Δt² f_I/m_I, so p_I must be the
 /// momentum *at* k+1. The mapped p_I holds the predicted velocity, short of

@@ -37,6 +37,7 @@ pub struct Axes {
 }
 
 impl Axes {
+    /// Makes axes; `log` for logarithmic ones.
     pub fn new(
         title: impl Into<String>,
         x_label: impl Into<String>,

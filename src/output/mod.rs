@@ -1,4 +1,4 @@
-//! What comes out of a run: its summary, and files with histories, pictures and particles.
+//! A run gives a summary, and files with histories, pictures and particles.
 
 #[cfg(feature = "program")]
 pub mod figure;

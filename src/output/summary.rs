@@ -1,4 +1,4 @@
-//! The figures of a run: errors, peaks, energy, cost.
+//! The summary of a run names its errors, peaks, energy and cost.
 
 use crate::method::cost::Cost;
 use crate::method::exact::Exact;
@@ -16,6 +16,7 @@ pub struct SummaryLine {
 }
 
 impl SummaryLine {
+    /// Makes a line.
     pub fn new(quantity: impl Into<String>, value: f64, unit: &'static str) -> Self {
         SummaryLine { quantity: quantity.into(), value, unit }
     }
@@ -35,6 +36,7 @@ pub struct Scales {
 }
 
 impl Scales {
+    /// Takes the scales from what moves the body: its throw, its mode, or its loads.
     pub fn of(scene: &Scene) -> Self {
         let c = wave_speed(&scene.body);
         let (rho, transit) = (scene.body.density, scene.body.length[0] / c);

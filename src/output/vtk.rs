@@ -1,5 +1,5 @@
-//! Particles for ParaView: one `.vtu` file for each recorded step, and the
-//! `.pvd` file that ties them to their times.
+//! Writes particles for ParaView: one `.vtu` file for each recorded step, and the `.pvd` file
+//! that ties them to their times.
 
 use crate::run::Frame;
 use crate::run::table::{Table, shortest};

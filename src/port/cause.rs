@@ -1,4 +1,4 @@
-//! What a difference usually comes from, and where the book tells more.
+//! Says what a difference usually comes from, and where the book tells more.
 
 use super::entry::{Address, Entry, SYMBOLS, address};
 use std::collections::HashMap;

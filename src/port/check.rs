@@ -1,5 +1,5 @@
-//! A port's trace against a reference: the first number that differs, in the paper's
-//! order.
+//! Holds a port's trace against a reference, and finds the first number that differs, in the
+//! paper's order.
 
 use super::cause::{self, Traces};
 use super::entry::{Address, COLUMNS, Entry, PAIRS, SYMBOLS, address, number};

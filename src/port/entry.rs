@@ -1,4 +1,4 @@
-//! What a trace is made of: entries, their symbols, and their form as CSV.
+//! A trace is made of entries; they have symbols, and a form as CSV.
 
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;

@@ -1,4 +1,4 @@
-//! For ports to other languages: traces, their comparison, and values at points.
+//! Ports to other languages get traces, their comparison, and values at points.
 
 mod cause;
 pub mod check;

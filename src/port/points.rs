@@ -1,4 +1,4 @@
-//! CSV of points in, CSV of values out: the commands `exact` and `shape`.
+//! Turns CSV of points into CSV of values, for the commands `exact` and `shape`.
 
 use super::rows::{self, Rows};
 use crate::method::basis::scattered::{NodeValues, values_at};

@@ -1,4 +1,4 @@
-//! CSV that somebody else has written: a header, and rows with the lines they stand in.
+//! Reads CSV that somebody else has written: a header, and rows with the lines they stand in.
 
 use crate::scene::fault::Fault;
 use csv::StringRecord;

@@ -1,5 +1,5 @@
-//! Every intermediate of the first steps of a run, in the paper's order: what a port
-//! is held against.
+//! Writes down every intermediate of the first steps of a run, in the paper's order: what a
+//! port is held against.
 //!
 //! A trace observes the run's own steps: after each of them it writes down what that step
 //! has made.

@@ -1,4 +1,4 @@
-//! The time loop: scene → state → step, step, … → history.
+//! The time loop carries a scene to its end: scene → state → step, step, … → history.
 
 mod open;
 mod outcome;

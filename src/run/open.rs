@@ -1,4 +1,4 @@
-//! From a scene's text to a scene that is ready to run.
+//! Makes of a scene's text a scene that is ready to run.
 
 use super::stability;
 use crate::scene::fault::SceneError;

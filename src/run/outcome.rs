@@ -1,4 +1,4 @@
-//! What comes out of a run.
+//! This is what comes out of a run.
 
 use super::table::Table;
 use crate::method::breakdown::BrokenDown;

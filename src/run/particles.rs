@@ -1,4 +1,4 @@
-//! The table of all particles at one time.
+//! Makes the table of all particles at one time.
 
 use super::table::Table;
 use crate::method::continuum::state::Particles;

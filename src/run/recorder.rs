@@ -45,6 +45,7 @@ struct LoadWork<const D: usize> {
 }
 
 impl<'a, const D: usize> Recorder<'a, D> {
+    /// Makes a recorder before the first step, with its columns named.
     pub fn new(scene: &'a Scene, model: &'a Model<D>, state: &State<D>) -> Self {
         let x = &state.particle.x;
         let followed = scene.probes.iter().map(|probe| {

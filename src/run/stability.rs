@@ -1,5 +1,4 @@
-//! The largest stable time step, predicted from one configuration and measured by
-//! marching.
+//! Predicts the largest stable time step from one configuration, and measures it by marching.
 //!
 //! Hold the particles where they are. With M the mass matrix that the scheme
 //! divides by, M_C the consistent one and K the stiffness, every scheme here is

@@ -1,4 +1,4 @@
-//! Tables of numbers, and their form as CSV.
+//! A table holds numbers, and can be written as CSV.
 
 use crate::scene::fault::Fault;
 

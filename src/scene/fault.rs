@@ -1,4 +1,4 @@
-//! Everything that can go wrong, by name.
+//! Everything that can go wrong has a name here.
 //!
 //! Two families, two exit codes. Input that cannot be used ([`SceneError`],
 //! [`Fault::Read`], …) ends with 2 before anything is written. A run that

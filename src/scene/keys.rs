@@ -1,6 +1,6 @@
-//! The keys that a scene may hold: each written once, with what its value may be, what
-//! holds without it, and a line of help. Reading, refusing, the JSON Schema and the book's
-//! scene reference all ask this table.
+//! The keys that a scene may hold are written once: each with what its value may be, what holds
+//! without it, and a line of help. Reading, refusing, the JSON Schema and the book's scene
+//! reference all ask this table.
 
 use super::kind::Kind::{self, *};
 use super::kind::{Number, any, between, plain, positive, whole};

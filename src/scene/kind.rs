@@ -1,4 +1,4 @@
-//! What the value of a key may be: in words, and as a check.
+//! Says what the value of a key may be, in words and as a check.
 
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
 use std::ops::{Range, RangeBounds};

@@ -1,4 +1,4 @@
-//! What a scene may ask for: memory and steps, before any is spent.
+//! Bounds what a scene may ask for, memory and steps, before any is spent.
 
 use super::parts::Scene;
 

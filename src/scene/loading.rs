@@ -1,4 +1,4 @@
-//! Body force and tractions of a scene.
+//! Reads the body force and the tractions of a scene.
 
 use super::fault::SceneError;
 use super::parts::{BodyForceSpec, Side, TractionSpec};

@@ -1,6 +1,6 @@
-//! Scenes: what to compute, declared in TOML, in SI units.
+//! A scene declares what to compute, in TOML and SI units.
 //!
-//! Data only. What a scene does not declare is not computed: no boundary table
+//! It is data only. What a scene does not declare is not computed: no boundary table
 //! means free sides, no region of initial velocity means a body at rest, no
 //! probe means no probe column. [`keys::KEYS`] says of every key what it may be.
 

@@ -1,4 +1,4 @@
-//! How the body of a scene moves at the start.
+//! Reads how the body of a scene moves at the start.
 
 use super::fault::SceneError;
 use super::parts::{Body, GridSpec, Motion, Region, Side};

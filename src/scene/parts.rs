@@ -1,4 +1,4 @@
-//! What a scene is made of, checked.
+//! A scene is made of these parts, checked.
 
 use crate::method::basis::Basis;
 use crate::method::choice::{Mass, Method};
@@ -54,6 +54,7 @@ pub struct Ball {
     pub radius: f64,
 }
 
+/// This declares cells and particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridSpec {
     /// Cells over the body along each axis.
@@ -64,6 +65,7 @@ pub struct GridSpec {
     pub beyond: Vec<[usize; 2]>,
 }
 
+/// This declares the time step and the end of the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Time {
     /// The largest Courant number c Δt / h; infinite where only the next bounds it.

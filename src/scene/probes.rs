@@ -1,4 +1,4 @@
-//! The probes of a scene.
+//! Reads the probes of a scene.
 
 use super::fault::SceneError;
 use super::keys::AXES;

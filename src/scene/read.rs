@@ -1,4 +1,4 @@
-//! From the values as written to a checked [`Scene`].
+//! Makes of the values as written a checked [`Scene`].
 
 use super::fault::SceneError;
 use super::limits::affordable;

@@ -1,4 +1,4 @@
-//! The JSON Schema of a scene, for editors that complete and check as one types.
+//! Makes the JSON Schema of a scene, for editors that complete and check as one types.
 
 use super::keys::{KEYS, Key, Without, children};
 use super::kind::{Kind, Number};

@@ -1,4 +1,4 @@
-//! Basis and integrator of a scene, and what OTM cannot do.
+//! Reads basis and integrator of a scene, and refuses what OTM cannot do.
 
 use super::fault::SceneError;
 use super::parts::{GridSpec, Time};

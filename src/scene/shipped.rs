@@ -1,4 +1,4 @@
-//! The scenes that ship inside the program.
+//! Some scenes ship inside the program.
 
 use super::fault::Fault;
 use super::kind::nearest;

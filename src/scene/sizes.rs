@@ -1,4 +1,4 @@
-//! What a scene amounts to before anything is built: particles, nodes, pairs, steps.
+//! Counts what a scene amounts to before anything is built: particles, nodes, pairs, steps.
 
 use super::parts::{Body, Scene};
 use crate::method::continuum::law::LinearElastic;

@@ -1,5 +1,5 @@
-//! The text of a scene: a file with the `--set` values merged in, and the way
-//! back from a byte to the place where it was written.
+//! The text of a scene is a file with the `--set` values merged in, and knows the way back from
+//! a byte to the place where it was written.
 
 use super::fault::SceneError;
 use super::keys::{self, KEYS};

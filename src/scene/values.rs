@@ -1,4 +1,4 @@
-//! The values of a scene by their path: read as the table of keys says, each with the
+//! The values of a scene are found by their path: read as the table of keys says, each with the
 //! place where it was written.
 
 use super::fault::SceneError;
@@ -64,6 +64,7 @@ impl Values {
         self.source.error(key, span, problem)
     }
 
+    /// Tells whether the scene has a value there.
     pub fn has(&self, path: &str) -> bool {
         self.found.contains_key(path)
     }
@@ -144,6 +145,7 @@ impl Values {
         found.map(|(_, meaning)| *meaning).ok_or_else(|| self.error(path, "it is not known here"))
     }
 
+    /// Gives true or false.
     pub fn flag(&self, path: &str) -> Result<bool, Box<SceneError>> {
         match (self.value(path), without(path)) {
             (Some(Value::Flag(flag)), _) => Ok(*flag),
@@ -152,6 +154,7 @@ impl Values {
         }
     }
 
+    /// Gives a number.
     pub fn number(&self, path: &str) -> Result<f64, Box<SceneError>> {
         match (self.value(path), without(path)) {
             (Some(Value::Numbers(list)), _) if list.len() == 1 => Ok(list[0]),
@@ -170,6 +173,7 @@ impl Values {
         if good(x) { Ok(x) } else { Err(self.error(path, format!("{x:?} is out of range"))) }
     }
 
+    /// Gives a whole number.
     pub fn whole(&self, path: &str) -> Result<usize, Box<SceneError>> {
         match (self.value(path), without(path)) {
             (Some(Value::Wholes(list)), _) if list.len() == 1 => Ok(list[0]),

@@ -1,4 +1,4 @@
-//! Which exact solution a scene has.
+//! Says which exact solution a scene has.
 
 use crate::method::continuum::law::LinearElastic;
 use crate::method::exact::Exact;

@@ -1,4 +1,4 @@
-//! Where particles stand at the start, and which of them carry a load.
+//! Says where particles stand at the start, and which of them carry a load.
 
 use crate::method::choice::Method;
 use crate::method::continuum::loads::{BodyForce, Loads, Traction};

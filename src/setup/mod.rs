@@ -1,5 +1,4 @@
-//! From a scene to what the time loop needs: model and state at k = 0, loads, and the
-//! exact solution.
+//! Makes of a scene what the time loop needs: model and state at k = 0, loads, exact solution.
 
 mod exact;
 pub mod lattice;

@@ -21,6 +21,7 @@ pub struct Way {
     cfl: f64,
 }
 
+/// The study goes these ways.
 pub const WAYS: [Way; 3] = [
     Way { name: "mpm lumped", sets: "method=mpm mass=lumped grid.particles_per_cell=2", cfl: 0.5 },
     Way {

@@ -14,6 +14,7 @@ pub enum Criterion {
 }
 
 impl Criterion {
+    /// All three stand here.
     pub const ALL: [Criterion; 3] =
         [Criterion::Velocity, Criterion::Stress, Criterion::Displacement];
 

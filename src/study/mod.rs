@@ -1,4 +1,4 @@
-//! Studies: one scene computed in many ways, and what that says.
+//! A study computes one scene in many ways, and says what comes of it.
 
 pub mod configuration;
 pub mod gamma;

@@ -1,4 +1,4 @@
-//! Scattered nodes, sorted so that those near a point are found without looking at all.
+//! Scattered nodes are sorted, so that those near a point are found without looking at all.
 
 use crate::method::grid::odometer;
 use nalgebra::SVector;

@@ -1,5 +1,5 @@
-//! Quadratic B-splines centred at the nodes, corrected at the ends of the grid
-//! (the extension that the paper names, its reference 18), D = 1, 2, 3.
+//! Quadratic B-splines are centred at the nodes and corrected at the ends of the grid (the
+//! extension that the paper names, its reference 18), D = 1, 2, 3.
 
 use super::tensor::Line;
 

@@ -1,4 +1,4 @@
-//! Which shape functions a model has, and what the rest of the program asks of them.
+//! A model has one basis, of which the rest of the program asks some things.
 
 use super::support::radius;
 

@@ -1,4 +1,4 @@
-//! Piecewise linear shape functions of the grid's cells, D = 1, 2, 3.
+//! Linear shape functions belong to the corners of the grid's cells, D = 1, 2, 3.
 
 use super::tensor::Line;
 

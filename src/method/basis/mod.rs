@@ -1,4 +1,4 @@
-//! Shape functions (§3.3 and §5), all behind one function that fills the table.
+//! All shape functions (§3.3 and §5) stand behind one function that fills the table.
 
 pub mod bins;
 pub mod bspline;

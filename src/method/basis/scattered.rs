@@ -1,5 +1,5 @@
-//! Local max-ent on nodes that stand anywhere: in a list, and where they move, the table
-//! of OTM.
+//! Takes local max-ent on nodes that stand anywhere: in a list, or, for the table of OTM, where
+//! they move.
 
 use super::kind::Basis;
 use super::lme::{Failure, Lme, max_ent_row};

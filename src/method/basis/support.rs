@@ -1,4 +1,4 @@
-//! Which nodes of a grid local max-ent sees.
+//! Says which nodes of a grid local max-ent sees.
 
 use super::lme::{Failure, Lme, max_ent_row};
 use crate::method::continuum::shape::Shape;

@@ -1,5 +1,4 @@
-//! Products of functions of one coordinate: what linear, uGIMP and B-spline
-//! bases share.
+//! Multiplies functions of one coordinate, which linear, uGIMP and B-spline bases share.
 
 use crate::method::continuum::shape::Shape;
 use crate::method::grid::{Grid, odometer};

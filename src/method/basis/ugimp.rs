@@ -1,5 +1,5 @@
-//! uGIMP: linear shape functions averaged over a particle of fixed size
-//! (Bardenhagen & Kober 2004), D = 1, 2, 3.
+//! uGIMP averages linear shape functions over a particle of fixed size (Bardenhagen & Kober
+//! 2004), D = 1, 2, 3.
 
 use super::tensor::Line;
 

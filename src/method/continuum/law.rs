@@ -1,4 +1,4 @@
-//! Pointwise laws, without any loop over particles or nodes: compatibility (2),
+//! These laws hold at a point, without any loop over particles or nodes: compatibility (2),
 //! linear elasticity in rate form (3), and conservation of mass (17).
 
 use nalgebra::{SMatrix, SVector};

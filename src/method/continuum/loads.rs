@@ -1,4 +1,4 @@
-//! Loads of a scene: body force (10) and traction on a layer of particles (11).
+//! A scene may have loads: a body force (10), and a traction on a layer of particles (11).
 
 use super::state::Particles;
 use crate::method::exact::manufactured::Manufactured;

@@ -1,4 +1,5 @@
-//! The consistent mass matrix (13), for scenes with `mass = "consistent"`.
+//! The nodes have one of two mass matrices: the lumped one of (18), or the consistent one of
+//! (13).
 
 use super::shape::Shape;
 use super::state::Particles;

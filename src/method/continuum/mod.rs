@@ -1,6 +1,6 @@
-//! The discretised continuum, §2-3 of the paper: what particles and nodes
-//! carry, the pointwise laws, the table of shape functions, and the sums that
-//! move quantities between the two.
+//! The discretised continuum, §2-3 of the paper, stands here: what particles and nodes carry,
+//! the pointwise laws, the table of shape functions, and the sums that move quantities between
+//! the two.
 
 pub mod law;
 pub mod loads;

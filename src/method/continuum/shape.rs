@@ -1,4 +1,4 @@
-//! The table of N_I(x_p) and ∇N_I(x_p) in compressed rows, one row per particle.
+//! The table has N_I(x_p) and ∇N_I(x_p) in compressed rows, one for each particle.
 
 use crate::method::cost::Cost;
 use nalgebra::SVector;

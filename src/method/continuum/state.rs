@@ -1,4 +1,4 @@
-//! What particles and nodes carry (§2, Table 1, and §3.3).
+//! Particles and nodes carry these quantities (§2, Table 1, and §3.3).
 //!
 //! One array per symbol of the paper; the index is the subscript, so `m_p` is
 //! `particle.m[p]` and `m_I` is `node.m[I]`. Positions are measured from the

@@ -1,5 +1,5 @@
-//! The sums of §3.3 that carry quantities from particles to nodes and back,
-//! with the lumped mass matrix of (18).
+//! The sums of §3.3 carry quantities from particles to nodes and back; what they divide by is
+//! the lumped mass of (18).
 
 use super::law::{applied, outer};
 use super::loads::Loads;

@@ -1,4 +1,4 @@
-//! What an exact solution gives at a point.
+//! An exact solution gives these fields at a point.
 
 /// These are v (m/s), σ (Pa) and u (m) at one material point and time.
 #[derive(Clone, Copy, Debug, PartialEq)]

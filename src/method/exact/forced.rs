@@ -1,4 +1,4 @@
-//! The elastic bar under loads, from rest: Riemann invariants once more.
+//! Solves the elastic bar under loads, from rest, by Riemann invariants once more.
 //!
 //! A body force adds to both invariants all along a characteristic, a traction
 //! adds to the one that leaves the loaded end. The problem is linear, so this

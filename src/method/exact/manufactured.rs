@@ -1,5 +1,5 @@
-//! A manufactured solution at finite strain: the motion is chosen, and the body
-//! force that keeps it going is derived.
+//! For a manufactured solution at finite strain the motion is chosen, and the body force that
+//! keeps it going is derived.
 
 use super::fields::Fields;
 use super::mode::Mode;

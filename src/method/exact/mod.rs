@@ -1,4 +1,4 @@
-//! Exact solutions, each in a file of its own.
+//! Each exact solution has a file of its own.
 
 mod fields;
 pub mod forced;

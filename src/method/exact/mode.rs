@@ -1,4 +1,4 @@
-//! The natural vibrations of a linear elastic bar.
+//! A linear elastic bar has natural vibrations.
 
 use super::fields::Fields;
 use super::riemann::End;

@@ -1,4 +1,4 @@
-//! The elastic bar by Riemann invariants, Appendix A, (40)-(59).
+//! Solves the elastic bar by Riemann invariants, Appendix A, (40)-(59).
 //!
 //! The bar is a system of two transport equations. Its invariants R^I and
 //! R^II keep their value along x − ct and x + ct, and turn into each other at

@@ -1,5 +1,5 @@
-//! Forward Euler, (20)-(21), with its three orders of the stress update, and
-//! the corrected form, (22)-(23).
+//! Forward Euler, (20)-(21), has three orders of the stress update, and a corrected form,
+//! (22)-(23).
 //!
 //! The nodal momentum is advanced first, and the particles move with the
 //! advanced one. (With the old momentum, as (21) is printed, no step is
@@ -13,7 +13,7 @@ use crate::method::breakdown::Breakdown;
 use crate::method::model::{Model, State};
 use crate::method::reading::StressUpdate;
 
-/// The number of steps of both forms.
+/// Both forms have so many steps.
 pub const STEPS: usize = 7;
 
 // ANCHOR: forward_euler

@@ -1,4 +1,4 @@
-//! The explicit generalized-α scheme of Hulbert and Chung (1996) for particles,
+//! This is the explicit generalized-α scheme of Hulbert and Chung (1996) for particles,
 //! (24)-(26), with the balance and the parameters that the paper leaves out.
 
 use super::steps::*;
@@ -9,7 +9,7 @@ use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
 use nalgebra::SVector;
 
-/// The number of steps of the scheme.
+/// The scheme has so many steps.
 pub const STEPS: usize = 7;
 
 // ANCHOR: alpha_parameters
@@ -25,6 +25,7 @@ pub struct Parameters {
 }
 
 impl Parameters {
+    /// Makes them from ρ_b (–).
     pub fn new(rho_b: f64) -> Self {
         let alpha_m = (2.0 * rho_b - 1.0) / (1.0 + rho_b);
         let beta = (5.0 - 3.0 * rho_b) / ((1.0 + rho_b) * (1.0 + rho_b) * (2.0 - rho_b));

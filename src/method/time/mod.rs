@@ -1,5 +1,5 @@
-//! Time integration (§4): the steps of the Algorithm, and the schemes, each a function of the
-//! number of its step.
+//! Time integration (§4) is a sequence of steps; each scheme is a function of the number of its
+//! step.
 
 pub mod euler;
 pub mod generalized_alpha;

@@ -1,12 +1,12 @@
-//! The paper's Algorithm: Newmark's explicit predictor-corrector with γ = ½,
-//! β = 0, the central difference (27)-(29).
+//! The paper's Algorithm is Newmark's explicit predictor-corrector with γ = ½, β = 0, the
+//! central difference (27)-(29).
 
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::model::{Model, State};
 use crate::method::reading::StepEight;
 
-/// The number of steps of the Algorithm.
+/// The Algorithm has so many steps.
 pub const STEPS: usize = 9;
 
 // ANCHOR: newmark

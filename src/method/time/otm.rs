@@ -1,4 +1,4 @@
-//! The optimal transportation meshfree method (§6.2; Li, Habbal and Ortiz 2010).
+//! This is the optimal transportation meshfree method (§6.2; Li, Habbal and Ortiz 2010).
 //!
 //! The nodes are the body's own: they carry mass and velocity, and they move. The
 //! particles are points of quadrature, with volume, deformation and stress. In
@@ -15,7 +15,7 @@ use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
 use nalgebra::SVector;
 
-/// The number of steps of OTM.
+/// OTM has so many steps.
 pub const STEPS: usize = 7;
 
 // ANCHOR: otm_start

@@ -1,4 +1,4 @@
-//! The steps of the paper's Algorithm and of the other schemes, one function each: outputs
+//! The steps of the paper's Algorithm and of the other schemes have one function each: outputs
 //! first, inputs after, so that a signature reads like its equation.
 
 use crate::method::basis::{self, Scratch};

@@ -1,4 +1,4 @@
-//! p_I and h∇p_I of all nodes that a point sees, (35), and their limit on the hull.
+//! Evaluates p_I and h∇p_I of all nodes that a point sees, (35), and their limit on the hull.
 
 use super::failure::Failure;
 use super::seen::{Faces, Seen, fill_faces};

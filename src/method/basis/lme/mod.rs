@@ -1,4 +1,4 @@
-//! Local maximum-entropy shape functions, (30)-(37), on any set of nodes.
+//! Local maximum-entropy shape functions, (30)-(37), take any set of nodes.
 //!
 //! [`plain`] solves the equations as the paper has them, and is read first. The other
 //! files find the same numbers at any γ and place: `seen`, the nodes of a point, and how it

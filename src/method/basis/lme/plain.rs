@@ -1,4 +1,4 @@
-//! Local max-ent as the paper has it: (31)-(37), solved by Newton's method from λ = 0.
+//! Solves local max-ent as the paper has it: (31)-(37), by Newton's method from λ = 0.
 
 use super::failure::Failure;
 use nalgebra::{SMatrix, SVector};

@@ -1,4 +1,4 @@
-//! The search for λ at any γ and place: Newton's method with good starts, damped.
+//! Searches for λ at any γ and place, by Newton's method with good starts, damped.
 
 use super::failure::Failure;
 use super::seen::{Seen, separates};

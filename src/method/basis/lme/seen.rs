@@ -1,4 +1,4 @@
-//! The nodes that a point sees, and those among them that share its weight.
+//! A point sees some nodes, and some of those share its weight.
 
 use super::failure::Failure;
 use nalgebra::{SMatrix, SVector};

@@ -1,5 +1,5 @@
-//! The weights p_I at one multiplier, and their moments: (31), (32), (34), (36)
-//! and (37), where a plain exponential would lose digits or leave the range of numbers.
+//! Makes the weights p_I at one multiplier, and their moments: (31), (32), (34), (36) and (37),
+//! where a plain exponential would lose digits or leave the range of numbers.
 
 use super::seen::{Seen, fill_faces};
 use crate::method::continuum::law::outer;
