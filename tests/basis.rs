@@ -200,7 +200,7 @@ fn ugimp_reaches_beyond_the_body() {
         let grid = Grid::<1>::over([1.0], [4], [[beyond, 0]]);
         on_grid(&UGIMP, &grid, &x).map(|table| table.row().iter().map(|value| value.1).sum::<f64>())
     };
-    assert_eq!(table(0), Err(Breakdown::LeftGrid { particle: 0, position: vec![0.05] }));
+    assert_eq!(table(0), Err(Breakdown::ReachesBeyond { particle: 0, position: vec![0.05] }));
     assert_relative_eq!(table(1).unwrap(), 1.0, epsilon = 1e-15);
 }
 

@@ -31,7 +31,7 @@ pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         None => built_in(),
         Some(Command::Run { scene, out, set, quiet }) => {
-            files::scene(&scene, &set).and_then(|scene| run(&scene, out, quiet))
+            files::scene(&scene, &set).and_then(|read| run(&read, Some(&scene), out, quiet))
         }
         Some(Command::Scenes { ask }) => scenes(ask),
         Some(Command::Completions { shell }) => completions(shell),
@@ -66,11 +66,15 @@ pub fn main() -> ExitCode {
 
 fn built_in() -> Result<(), Fault> {
     let scene = lme_mpm::run::parse("dyka", "dyka.toml (built in)", DYKA, &[])?;
-    run(&scene, None, false)
+    run(&scene, None, None, false)
 }
 
-fn run(scene: &Scene, out: Option<PathBuf>, quiet: bool) -> Result<(), Fault> {
+fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, quiet: bool) -> Result<(), Fault> {
     let dir = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
+    if let Some(path) = path {
+        let endings = [".csv", ".svg", ".vtu", ".pvd"];
+        files::spare(path, &dir, |name| endings.iter().any(|ending| name.ends_with(ending)))?;
+    }
     let steps = scene.sizes().2 as u64;
     let bar = ProgressBar::with_draw_target(
         Some(steps),

@@ -43,23 +43,24 @@ fn comparable(template: &Template) -> Result<(), Fault> {
 /// Does `lme-mpm trade`.
 pub fn trade(arguments: &TradeArguments) -> Result<(), Fault> {
     let template = template(arguments.scene.as_deref())?;
+    comparable(&template)?;
     if let Some(line) = &arguments.row {
         return row(&template, line);
     }
     if arguments.list {
         return list(&template, arguments);
     }
-    comparable(&template)?;
     let dir = &arguments.out;
     let rows = match arguments.merge.is_empty() {
         true => tried(&template, dir, arguments.full, arguments.jobs)?,
         false => {
-            prepare(dir)?;
             let scene = template.digest()?;
             let mut runs = Vec::new();
             for path in &arguments.merge {
-                runs.extend(log::read(path, &scene)?);
+                files::spare(path, dir, |name| ["trade.csv", "cheapest.csv"].contains(&name))?;
+                runs.extend(log::read_whole(path, &scene)?);
             }
+            prepare(dir)?;
             ranking::summarise(&runs)
         }
     };
@@ -184,6 +185,7 @@ pub fn recommend(
     comparable(&template)?;
     let name = scene.file_stem().map_or("scene".into(), |name| name.to_string_lossy());
     let dir = out.unwrap_or_else(|| Path::new("out/recommend").join(name.as_ref()));
+    files::spare(scene, &dir, |name| name == FILE || name.ends_with(".csv"))?;
     let rows = tried(&template, &dir, false, jobs)?;
     write(&dir, &rows)?;
     let quantity = criterion.name();

@@ -38,6 +38,11 @@ pub enum Breakdown {
     )]
     LeftGrid { particle: usize, position: Vec<f64> },
     #[error(
+        "particle {particle} reaches beyond the grid with its own size: it stands at {position:?} m \
+         from the body's lower corner; give it room with `grid.beyond`"
+    )]
+    ReachesBeyond { particle: usize, position: Vec<f64> },
+    #[error(
         "the volume of particle {particle} is used up: in one step it would become {:e} times \
          what it was, and that must stay above 0",
         1.0 + strain

@@ -27,6 +27,18 @@ pub enum Integrator {
     },
 }
 
+impl Integrator {
+    /// Says whether particles and nodes keep an acceleration from step to step.
+    pub fn carries_acceleration(&self) -> bool {
+        match self {
+            Integrator::GeneralizedAlpha { .. } => true,
+            Integrator::Newmark(_) | Integrator::ForwardEuler(_) | Integrator::CorrectedEuler => {
+                false
+            }
+        }
+    }
+}
+
 /// The nodes have one of two mass matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mass {

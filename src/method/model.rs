@@ -1,7 +1,7 @@
 //! The model stays the same from step to step, and the state changes.
 
 use super::basis::{Basis, Scratch};
-use super::choice::{Integrator, Mass, Method};
+use super::choice::{Mass, Method};
 use super::continuum::law::LinearElastic;
 use super::continuum::loads::Loads;
 use super::continuum::mass::{ConsistentMass, MassMatrix};
@@ -37,7 +37,7 @@ impl<const D: usize> Model<D> {
         let (vector, matrix) = (size_of::<SVector<f64, D>>(), size_of::<SMatrix<f64, D, D>>());
         let of_basis = if self.basis.has_multiplier() { vector } else { 0 };
         let of_method = match self.method {
-            Method::Mpm(Integrator::GeneralizedAlpha { .. }) => vector, // a_p
+            Method::Mpm(integrator) if integrator.carries_acceleration() => vector, // a_p
             Method::Mpm(_) => 0,
             Method::Otm => matrix, // F_p
         };
@@ -72,7 +72,7 @@ impl<const D: usize> State<D> {
         };
         let mut node = Nodes::blank(nodes);
         match model.method {
-            Method::Mpm(Integrator::GeneralizedAlpha { .. }) => {
+            Method::Mpm(integrator) if integrator.carries_acceleration() => {
                 particle.a = zeros(particles);
                 (node.a, node.a_next) = (zeros(nodes), zeros(nodes));
             }

@@ -41,6 +41,25 @@ pub fn scene(path: &Path, sets: &[String]) -> Result<Scene, Fault> {
     Ok(run::parse(&name, &path.display().to_string(), &scene_text(path)?, sets)?)
 }
 
+/// Refuses an `input` that a command would overwrite: a file in the folder `dir` with a name
+/// that is `taken` by what it writes.
+///
+/// Errors: [`Fault::Argument`].
+pub fn spare(input: &Path, dir: &Path, taken: impl Fn(&str) -> bool) -> Result<(), Fault> {
+    let (Ok(input), Ok(dir)) = (input.canonicalize(), dir.canonicalize()) else {
+        return Ok(()); // one of them is not there yet
+    };
+    let name = input.file_name().map_or("".into(), |name| name.to_string_lossy());
+    if input.parent() != Some(&dir) || !taken(&name) {
+        return Ok(());
+    }
+    Err(Fault::Argument {
+        argument: "--out",
+        problem: format!("the results would overwrite the input {}", input.display()),
+        allowed: "another folder, or another name for the input",
+    })
+}
+
 /// Writes all `files` into `dir`, each complete or not at all, and removes the
 /// `stale` ones of an earlier run, so that a directory does not mix two runs.
 ///

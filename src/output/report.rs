@@ -103,7 +103,9 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
     write_all(dir, &[(FAILED.to_string(), stopped.history.csv()?)], &earlier(dir))?;
     let courant = scene.courant_number();
     let hint = match stopped.broken.breakdown {
-        Breakdown::NoBasis { .. } | Breakdown::SingularMass { .. } => String::new(),
+        Breakdown::ReachesBeyond { .. }
+        | Breakdown::NoBasis { .. }
+        | Breakdown::SingularMass { .. } => String::new(),
         Breakdown::LeftGrid { .. } | Breakdown::NotFinite { .. } if courant <= 1.0 => String::new(),
         _ if scene.mass == Mass::Consistent => format!(
             "the Courant number c Δt / h is {courant:.3}: try a smaller time.cfl, or more \

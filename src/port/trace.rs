@@ -84,56 +84,53 @@ pub fn trace_in<const D: usize>(
     Ok((recorder.entries, state))
 }
 
-/// Lists the symbols that step `n` of a method makes, in the paper's order: one table, which is
-/// why this function is long.
+/// Lists the symbols that step `n` of a method makes, in the paper's order.
 fn made_by(method: Method, n: usize) -> &'static [&'static str] {
+    const NONE: &[&str] = &[];
     const TABLE: &[&str] = &["N_Ip", "grad_N_Ip", "lambda"];
+    const MAPPED: &[&str] = &["m_I", "p_I"];
     const FORCES: &[&str] = &["f_int_I", "f_ext_I", "f_I"];
+    const ADVANCED: &[&str] = &["p_I_advanced"];
+    const MOVED: &[&str] = &["v_p", "x_p"];
     const MATERIAL: &[&str] = &["d_eps_p", "rho_p", "sigma_p"];
-    let integrator = match method {
-        Method::Otm => {
-            return match n {
-                0 => &["m_I", "v_I"],
-                1 => &["v_I"],
-                2 => &["x_I"],
-                3 => &["x_p"],
-                4 => MATERIAL,
-                5 => TABLE,
-                6 => FORCES,
-                _ => &["v_I", "v_p"],
-            };
-        }
-        Method::Mpm(Integrator::Newmark(_)) => {
-            return match n {
-                1 => &["x_p", "v_p"],
-                2 => TABLE,
-                3 => &["m_I", "p_I"],
-                4 => &["v_I"],
-                5 => &["d_eps_p"],
-                6 => &["rho_p", "sigma_p"],
-                7 => FORCES,
-                8 => &["p_I_advanced"],
-                _ => &["v_p"],
-            };
-        }
-        Method::Mpm(integrator) => integrator,
+    const STRAINED: &[&str] = &["v_I", "d_eps_p", "rho_p", "sigma_p"];
+    let steps: &[&[&str]] = match method {
+        Method::Otm => &[
+            &["m_I", "v_I"],
+            &["v_I"],
+            &["x_I"],
+            &["x_p"],
+            MATERIAL,
+            TABLE,
+            FORCES,
+            &["v_I", "v_p"],
+        ],
+        Method::Mpm(integrator) => match integrator {
+            Integrator::Newmark(_) => &[
+                NONE,
+                &["x_p", "v_p"],
+                TABLE,
+                MAPPED,
+                &["v_I"],
+                &["d_eps_p"],
+                &["rho_p", "sigma_p"],
+                FORCES,
+                ADVANCED,
+                &["v_p"],
+            ],
+            Integrator::ForwardEuler(StressUpdate::First) => {
+                &[NONE, TABLE, MAPPED, STRAINED, FORCES, ADVANCED, MOVED, NONE]
+            }
+            Integrator::ForwardEuler(StressUpdate::Last) => {
+                &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, MATERIAL]
+            }
+            Integrator::ForwardEuler(StressUpdate::ModifiedLast) | Integrator::CorrectedEuler => {
+                &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, STRAINED]
+            }
+            Integrator::GeneralizedAlpha { .. } => {
+                &[NONE, TABLE, MAPPED, &["a_I", "v_I"], FORCES, &["a_I_next"], MOVED, MATERIAL]
+            }
+        },
     };
-    let alpha = matches!(integrator, Integrator::GeneralizedAlpha { .. });
-    match (n, integrator) {
-        (1, _) => TABLE,
-        (2, _) => &["m_I", "p_I"],
-        (3, Integrator::ForwardEuler(StressUpdate::First)) => {
-            &["v_I", "d_eps_p", "rho_p", "sigma_p"]
-        }
-        (3, _) if alpha => &["a_I", "v_I"],
-        (3, _) => &["v_I"],
-        (4, _) => FORCES,
-        (5, _) if alpha => &["a_I_next"],
-        (5, _) => &["p_I_advanced"],
-        (6, _) => &["v_p", "x_p"],
-        (_, Integrator::ForwardEuler(StressUpdate::First)) => &[],
-        (_, Integrator::ForwardEuler(StressUpdate::Last)) => MATERIAL,
-        (_, _) if alpha => MATERIAL,
-        (_, _) => &["v_I", "d_eps_p", "rho_p", "sigma_p"],
-    }
+    steps.get(n).copied().unwrap_or(NONE)
 }

@@ -44,7 +44,10 @@ pub fn integrator(values: &Values) -> Result<Integrator, Box<SceneError>> {
             values.choose("time.stress_update", &orders).map(Integrator::ForwardEuler)
         }
         "corrected-euler" => Ok(Integrator::CorrectedEuler),
-        _ => Ok(Integrator::GeneralizedAlpha { rho_b: values.number("time.rho_b")? }),
+        "generalized-alpha" => {
+            Ok(Integrator::GeneralizedAlpha { rho_b: values.number("time.rho_b")? })
+        }
+        other => Err(values.error("time.integrator", format!("\"{other}\" is not known here"))),
     }
 }
 
@@ -55,10 +58,11 @@ pub fn basis(values: &Values, grid: &GridSpec) -> Result<Basis, Box<SceneError>>
         "linear" => Ok(Basis::Linear),
         "ugimp" => Ok(Basis::Ugimp { half_length: [half(0), half(1), half(2)] }),
         "bspline" => Ok(Basis::BSpline),
-        _ => Ok(Basis::Lme {
+        "lme" => Ok(Basis::Lme {
             gamma: values.number("basis.gamma")?,
             cutoff: values.number("basis.cutoff")?,
         }),
+        other => Err(values.error("basis.kind", format!("\"{other}\" is not known here"))),
     }
 }
 

@@ -50,6 +50,7 @@ impl Source {
         let mut source = Source { passages: Vec::new() };
         source.add(path.to_string(), text);
         for set in sets {
+            let set = &dotted(set);
             let quoted = match set.split_once('=') {
                 // A bare word is a string, so that shells need no quotes.
                 Some((key, word)) if DeTable::parse(set).is_err() && is_word(word) => {
@@ -132,25 +133,54 @@ impl Source {
         key: &str,
         start: usize,
     ) -> Result<(), Box<SceneError>> {
-        let span = start..start + key.len();
-        if keys::find(key).is_none() {
-            let mut error = self.error(key, span, "this key is not known");
+        let refuse = |problem: String| self.error(key, start..start + key.len(), problem);
+        let names: Vec<&str> = key.split('.').collect();
+        let is_number = |name: &&str| name.parse::<usize>().is_ok();
+        let path: Vec<&str> = names.iter().copied().filter(|name| !is_number(name)).collect();
+        if keys::find(&path.join(".")).is_none() {
+            let mut error = refuse("this key is not known".to_string());
             error.suggestion = nearest(key, KEYS.iter().map(|key| key.path));
             return Err(error);
         }
-        let (mut table, mut rest) = (table, key);
-        while let Some((parent, inside)) = rest.split_once('.') {
-            match table.get_mut(parent).map(Spanned::get_mut) {
-                Some(DeValue::Table(inner)) => (table, rest) = (inner, inside),
-                Some(_) => {
-                    let problem = format!("`{parent}` is not a table here");
-                    return Err(self.error(key, span, problem));
+        let (mut table, mut rest) = (table, names.as_slice());
+        loop {
+            rest = match (rest, rest.first().and_then(|name| table.get_mut(*name))) {
+                (_, None) => return Ok(()),
+                ([name], Some(_)) => {
+                    table.remove(*name);
+                    return Ok(());
                 }
-                None => return Ok(()),
-            }
+                ([_, inside @ ..], Some(value)) => match value.get_mut() {
+                    DeValue::Table(inner) => {
+                        table = inner;
+                        inside
+                    }
+                    DeValue::Array(list) => {
+                        let entry = inside[0].parse().ok().filter(|n: &usize| *n < list.len());
+                        let Some(n) = entry else {
+                            let last = list.len().saturating_sub(1);
+                            let mut error =
+                                refuse(format!("`{}` is not an entry of this list", inside[0]));
+                            error.allowed = format!("a number from 0 to {last}");
+                            return Err(error);
+                        };
+                        if inside.len() == 1 {
+                            let problem = "one entry of a list cannot be taken out";
+                            let mut error = refuse(problem.to_string());
+                            error.allowed = format!("{}= for the whole list", rest[0]);
+                            return Err(error);
+                        }
+                        let DeValue::Table(inner) = list.as_mut()[n].get_mut() else {
+                            return Err(refuse(format!("entry {n} is not a table")));
+                        };
+                        table = inner;
+                        &inside[1..]
+                    }
+                    _ => return Err(refuse(format!("`{}` is not a table here", rest[0]))),
+                },
+                ([], Some(_)) => return Ok(()),
+            };
         }
-        table.remove(rest);
-        Ok(())
     }
 
     fn merge_table<'i>(
@@ -210,4 +240,16 @@ fn is_word(text: &str) -> bool {
 /// Gives the path of `name` in the table `parent`.
 pub fn join(parent: &str, name: &str) -> String {
     if parent.is_empty() { name.to_string() } else { format!("{parent}.{name}") }
+}
+
+/// Writes the entries of lists in the key of a `KEY=VALUE` as `probe.0.name`, where messages
+/// have `probe[0].name`.
+fn dotted(set: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_.[]".contains(c);
+    match set.split_once('=') {
+        Some((key, value)) if key.contains('[') && key.chars().all(plain) => {
+            format!("{}={value}", key.replace('[', ".").replace(']', ""))
+        }
+        _ => set.to_string(),
+    }
 }

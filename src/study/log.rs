@@ -76,7 +76,7 @@ impl TimedRun {
     /// Reads the run of a line, if the line is whole.
     fn read(record: &csv::StringRecord) -> Option<Self> {
         let cell = |name: &str| record.get(columns().iter().position(|column| *column == name)?);
-        let number = |name: &str| cell(name)?.parse().ok();
+        let number = |name: &str| cell(name)?.parse().ok().filter(|x: &f64| x.is_finite());
         Some(TimedRun {
             configuration: cell("configuration")?.parse().ok()?,
             pass: cell("pass")?.parse().ok()?,
@@ -84,7 +84,7 @@ impl TimedRun {
                 "" => Ok(Measured::read(number)?),
                 problem => Err(problem.to_string()),
             },
-            wall_time: number("wall_time")?,
+            wall_time: number("wall_time").filter(|time| *time >= 0.0)?,
         })
     }
 }
@@ -97,11 +97,35 @@ pub fn csv_of<'a>(
     csv(&columns(), runs.into_iter().map(|run| run.cells(scene)))
 }
 
-/// Reads the runs of a log that belongs to the scene with this digest; a last line that
-/// an interruption has cut short is left out.
+/// Reads the runs of a log that belongs to the scene with this digest; lines that an
+/// interruption has cut short are left out.
 ///
 /// Errors: [`Fault::Read`]; [`Fault::Argument`] for another study's log.
 pub fn read(path: &Path, scene: &str) -> Result<Vec<TimedRun>, Fault> {
+    let lines = lines(path, scene)?;
+    Ok(lines.into_iter().filter_map(|(_, run)| run).collect())
+}
+
+/// Reads a log of which every line must be whole, and which has at least one run.
+///
+/// Errors: those of [`read`]; [`Fault::Points`] with the line that is not a run.
+pub fn read_whole(path: &Path, scene: &str) -> Result<Vec<TimedRun>, Fault> {
+    let fault = |line: u64, problem: &str| Fault::Points {
+        path: path.display().to_string(),
+        line,
+        problem: problem.to_string(),
+        allowed: "runs as `lme-mpm trade --row` prints them, with finite numbers".to_string(),
+    };
+    let lines = lines(path, scene)?;
+    if lines.is_empty() {
+        return Err(fault(1, "there is no run"));
+    }
+    let run = |(line, run): (u64, Option<_>)| run.ok_or(fault(line, "this is not a whole run"));
+    lines.into_iter().map(run).collect()
+}
+
+/// Reads the lines of a log with their numbers, each with its run if it is whole.
+fn lines(path: &Path, scene: &str) -> Result<Vec<(u64, Option<TimedRun>)>, Fault> {
     let fault = |source| Fault::Read { path: path.to_path_buf(), source };
     let refuse = |what: &str, allowed| Fault::Argument {
         argument: "log",
@@ -109,27 +133,28 @@ pub fn read(path: &Path, scene: &str) -> Result<Vec<TimedRun>, Fault> {
         allowed,
     };
     let text = fs::read_to_string(path).map_err(fault)?;
-    let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-    if whole.is_empty() {
+    if !text.contains('\n') {
         return Ok(Vec::new()); // cut short before its first line was whole
     }
-    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(whole.as_bytes());
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|error| fault(error.into()))?.clone();
     if header.iter().ne(columns()) {
         return Err(refuse("has other columns", "a log of `lme-mpm trade`"));
     }
-    let mut runs = Vec::new();
-    for record in reader.records().map_while(Result::ok) {
-        if record.len() != header.len() {
-            continue;
-        }
-        if &record[0] != scene {
+    let mut lines = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| fault(error.into()))?;
+        let line = record.position().map_or(0, |position| position.line());
+        // A last line without its end may lack the last digits of its last number.
+        let ends = record.position().map_or(0, |position| position.byte()) as usize;
+        let whole = record.len() == header.len() && text[ends..].contains('\n');
+        if whole && &record[0] != scene {
             let allowed = "a log of this scene, or another --out";
             return Err(refuse("belongs to another scene", allowed));
         }
-        runs.extend(TimedRun::read(&record));
+        lines.push((line, TimedRun::read(&record).filter(|_| whole)));
     }
-    Ok(runs)
+    Ok(lines)
 }
 
 /// Completes the runs of a grid: takes those that the log at `path` has and makes the

@@ -46,7 +46,10 @@ pub fn fill_from_grid<const D: usize>(
                     .map_err(|failure| Breakdown::NoBasis { particle: p, failure })?;
             }
             _ => {
-                let lines = lines(basis, grid, &at).ok_or_else(|| outside(p, x_p))?;
+                let lines = lines(basis, grid, &at).ok_or_else(|| Breakdown::ReachesBeyond {
+                    particle: p,
+                    position: x_p.iter().copied().collect(),
+                })?;
                 product_row(shape, grid, &lines);
             }
         }

@@ -27,11 +27,14 @@ pub fn start<const D: usize>(
             otm::start(state, model)?;
             after(0, state);
         }
-        Method::Mpm(Integrator::Newmark(_)) => all_steps(state, model, 0.0, 0.0, after)?,
-        Method::Mpm(Integrator::GeneralizedAlpha { .. }) if model.loads.is_some() => {
-            generalized_alpha::start(state, model)?;
-        }
-        Method::Mpm(_) => {}
+        Method::Mpm(integrator) => match integrator {
+            Integrator::Newmark(_) => all_steps(state, model, 0.0, 0.0, after)?,
+            Integrator::GeneralizedAlpha { .. } if model.loads.is_some() => {
+                generalized_alpha::start(state, model)?;
+            }
+            Integrator::GeneralizedAlpha { .. } => {}
+            Integrator::ForwardEuler(_) | Integrator::CorrectedEuler => {}
+        },
     }
     steps::finite(&state.particle)
 }
@@ -105,7 +108,12 @@ fn step_count(method: Method) -> usize {
 /// the forces of k+1, the others those of k.
 pub fn time_of_loads(method: Method, dt: f64, t: f64) -> f64 {
     match method {
-        Method::Otm | Method::Mpm(Integrator::Newmark(_)) => t,
-        Method::Mpm(_) => t - dt,
+        Method::Otm => t,
+        Method::Mpm(integrator) => match integrator {
+            Integrator::Newmark(_) => t,
+            Integrator::ForwardEuler(_)
+            | Integrator::CorrectedEuler
+            | Integrator::GeneralizedAlpha { .. } => t - dt,
+        },
     }
 }
