@@ -78,7 +78,7 @@ pub const SYMBOLS: [(&str, &str, &str); 29] = [
 /// These symbols belong to a particle and a node; all others leave the node out.
 pub const PAIRS: [&str; 2] = ["N_Ip", "grad_N_Ip"];
 
-/// A recorder writes entries of one step of one time step.
+/// A trace recorder writes the entries of one step of one time step after the other.
 #[derive(Default)]
 pub struct TraceRecorder {
     pub entries: Vec<Entry>,

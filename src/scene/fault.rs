@@ -1,9 +1,9 @@
 //! Everything that can go wrong has a name here.
 //!
-//! Two families, two exit codes. Input that cannot be used ([`SceneError`],
-//! [`Fault::Read`], …) ends with 2 before anything is written. A run that
-//! breaks down ([`BrokenDown`]) ends with 1 and leaves its history under a name
-//! that says so.
+//! There are two families with two exit codes. Input that cannot be used ([`SceneError`],
+//! [`Fault::Read`], …) ends with 2 before anything is written. A run that breaks down
+//! ([`BrokenDown`]) ends with 1 and leaves its history under a name that says so; a port
+//! whose trace differs ([`Fault::Differs`]) ends with 1, too.
 
 use crate::method::breakdown::BrokenDown;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};

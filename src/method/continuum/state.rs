@@ -1,6 +1,6 @@
 //! Particles and nodes carry these quantities (§2, Table 1, and §3.3).
 //!
-//! One array per symbol of the paper; the index is the subscript, so `m_p` is
+//! Each symbol of the paper has one array; the index is the subscript, so `m_p` is
 //! `particle.m[p]` and `m_I` is `node.m[I]`. Positions are measured from the
 //! body's lower corner, so moving a scene in space changes no digit.
 
@@ -43,7 +43,7 @@ pub struct Nodes<const D: usize> {
     pub m: Vec<f64>,
     /// p_I, momentum (kg m/s).
     pub p: Vec<SVector<f64, D>>,
-    /// v_I = p_I / m_I, velocity (m/s).
+    /// v_I, velocity (m/s): p_I / m_I, or what solves (12) with the consistent mass matrix.
     pub v: Vec<SVector<f64, D>>,
     /// f_I, force (N).
     pub f: Vec<SVector<f64, D>>,
@@ -51,8 +51,9 @@ pub struct Nodes<const D: usize> {
     pub mv: Vec<SVector<f64, D>>,
     /// m_I a_I (N), where a_I solves (12): f_I itself with the lumped mass matrix.
     pub ma: Vec<SVector<f64, D>>,
-    /// a_I of k and of k+1 (m/s²); of generalized-α only.
+    /// a_I of k (m/s²); of generalized-α only.
     pub a: Vec<SVector<f64, D>>,
+    /// a_I of k+1 (m/s²); of generalized-α only.
     pub a_next: Vec<SVector<f64, D>>,
     /// x_I, position (m); of OTM only, whose nodes move.
     pub x: Vec<SVector<f64, D>>,

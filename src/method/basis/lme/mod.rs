@@ -1,9 +1,9 @@
 //! Local maximum-entropy shape functions, (30)-(37), take any set of nodes.
 //!
 //! [`plain`] solves the equations as the paper has them, and is read first. The other
-//! files find the same numbers at any γ and place: `seen`, the nodes of a point, and how it
-//! lies in their hull; `weights`, p_I at one λ, and their moments; `search`, λ;
-//! `functions`, all p_I and their gradients.
+//! files find the same numbers at any γ and place: `seen` holds the nodes of a point, and how
+//! it lies in their hull; `weights` makes p_I at one λ, and their moments; `search` finds λ;
+//! `functions` evaluates all p_I and their gradients.
 //!
 //! Nothing here has a unit: with ξ_I = (x − x_I)/h and λ scaled by h, (31) is
 //! p_I ∝ exp(−γ|ξ_I|² + λ·ξ_I), γ = βh². Relative to one node 0 near x, with
@@ -14,7 +14,7 @@
 //! The place ξ_0 has left the exponent: its rounding cannot be blown up by a
 //! large γ, and on a grid all a_I are whole numbers.
 //!
-//! Not covered: a point on a line of nodes, but on none of them, inside the set,
+//! This does not cover a point on a line of nodes, but on none of them, inside the set,
 //! with γ above 700 and no cut-off. The weights beside that line are then too
 //! small for a number; the answer is [`Failure::NotConverged`]. With the default
 //! cut-off such a point is on the side of its cell, and is served.
