@@ -486,3 +486,75 @@ fn bad_traces() {
     let words = ["first difference: k = 0, step 9", &format!("2.0 in line {at}")];
     assert_fails(&run(&["check", "ref.csv", "port.csv"]), 1, &words);
 }
+
+/// No command writes over what it reads: a scene among the results, a log among the tables.
+#[test]
+fn inputs_are_not_overwritten() {
+    let dir = directory("inputs");
+    for (name, arguments) in [
+        ("history.csv", &["run", "history.csv", "--quiet", "--out", "."][..]),
+        ("recommended.toml", &["recommend", "recommended.toml", "--error", "30%", "--out", "."]),
+        ("trade.csv", &["trade", "--merge", "trade.csv", "--out", "."]),
+    ] {
+        fs::copy(DYKA, dir.join(name)).unwrap();
+        let output = program(&dir, arguments);
+        assert_fails(&output, 2, &["would overwrite the input", name, "allowed: another folder"]);
+        assert_eq!(fs::read(dir.join(name)).unwrap(), fs::read(DYKA).unwrap());
+    }
+    assert_eq!(files(&dir), ["history.csv", "recommended.toml", "trade.csv"]);
+}
+
+/// Logs that are merged must be whole: no run, a line cut short, a number that is none are
+/// named with their line, and no folder is made.
+#[test]
+fn merged_logs_are_whole() {
+    let dir = directory("merged");
+    let row = "method=mpm mass=lumped basis.kind=linear time.integrator=newmark grid.cells=4 \
+               grid.particles_per_cell=1 time.cfl=0.5";
+    let log = text(&program(&dir, &["trade", "--row", row]).stdout);
+    assert_eq!(log.lines().count(), 4, "{log}");
+    let time = log.trim_end().rsplit(',').next().unwrap();
+    for (bad, words) in [
+        (String::new(), &["line 1", "there is no run"][..]),
+        (format!("{}\n", log.lines().next().unwrap()), &["line 1", "there is no run"]),
+        (log[..log.len() - 9].to_string(), &["line 4", "not a whole run"]),
+        (log.replace(time, "nan"), &["line 4", "not a whole run", "finite"]),
+        (log.replace(time, "-1"), &["line 4", "not a whole run"]),
+    ] {
+        fs::write(dir.join("log.csv"), bad).unwrap();
+        let merged = program(&dir, &["trade", "--merge", "log.csv", "--out", "out"]);
+        assert_fails(&merged, 2, &[&["log.csv"], words].concat());
+    }
+    assert_eq!(files(&dir), ["log.csv"]);
+    let unmeasured = program(&dir, &["trade", "--list", "--scene", "colliding-discs"]);
+    assert_fails(&unmeasured, 2, &["no exact solution"]);
+}
+
+/// `--set KEY=` takes a value out, also of an entry of a list, in both ways to count it.
+#[test]
+fn values_are_taken_out() {
+    let parsed = |set: &str| scene_of(&[set]);
+    assert_eq!(parsed("probe=").unwrap().probes.len(), 0);
+    assert_eq!(parsed("grid.beyond=").unwrap(), scene_of(&[]).unwrap());
+    for (set, words) in [
+        ("probe[0].position=", "probe[0].position: this key is missing"),
+        ("probe.0.position=", "probe[0].position: this key is missing"),
+        ("probe[0]=", "one entry of a list cannot be taken out, only all: probe="),
+        ("probe[9].name=", "`9` is not an entry of this list"),
+        ("grid[0].cells=", "there is no list here"),
+        ("title.x=", "this key is not known"),
+        ("foo=", "this key is not known"),
+    ] {
+        let error = parsed(set).unwrap_err().to_string();
+        assert!(error.contains(words), "{set}: {error}");
+    }
+    assert_eq!(parsed("probe[0].name=mine").unwrap(), parsed("probe.0.name=mine").unwrap());
+}
+
+/// The bar's scene with changes.
+fn scene_of(
+    sets: &[&str],
+) -> Result<lme_mpm::scene::Scene, Box<lme_mpm::scene::fault::SceneError>> {
+    let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
+    lme_mpm::run::parse("dyka", "dyka.toml", lme_mpm::scene::DYKA, &sets)
+}

@@ -84,7 +84,8 @@ pub fn trace_in<const D: usize>(
     Ok((recorder.entries, state))
 }
 
-/// Lists the symbols that step `n` of a method makes, in the paper's order.
+/// Lists the symbols that step `n` of a method makes, in the paper's order: one table, which is
+/// why this function is long.
 fn made_by(method: Method, n: usize) -> &'static [&'static str] {
     const NONE: &[&str] = &[];
     const TABLE: &[&str] = &["N_Ip", "grad_N_Ip", "lambda"];

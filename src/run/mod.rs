@@ -19,6 +19,9 @@ use recorder::Recorder;
 
 /// Runs a scene to its end; `progress` hears the number of every finished step.
 ///
+/// A time step beyond the limit is run as well, and blows up; the limit is known beforehand
+/// from [`stability::predicted`].
+///
 /// Errors: [`Stopped`] when the run breaks down.
 pub fn run(scene: &Scene, progress: &mut dyn FnMut(usize)) -> Result<Outcome, Box<Stopped>> {
     match scene.dimension() {

@@ -142,45 +142,7 @@ impl Source {
             error.suggestion = nearest(key, KEYS.iter().map(|key| key.path));
             return Err(error);
         }
-        let (mut table, mut rest) = (table, names.as_slice());
-        loop {
-            rest = match (rest, rest.first().and_then(|name| table.get_mut(*name))) {
-                (_, None) => return Ok(()),
-                ([name], Some(_)) => {
-                    table.remove(*name);
-                    return Ok(());
-                }
-                ([_, inside @ ..], Some(value)) => match value.get_mut() {
-                    DeValue::Table(inner) => {
-                        table = inner;
-                        inside
-                    }
-                    DeValue::Array(list) => {
-                        let entry = inside[0].parse().ok().filter(|n: &usize| *n < list.len());
-                        let Some(n) = entry else {
-                            let last = list.len().saturating_sub(1);
-                            let mut error =
-                                refuse(format!("`{}` is not an entry of this list", inside[0]));
-                            error.allowed = format!("a number from 0 to {last}");
-                            return Err(error);
-                        };
-                        if inside.len() == 1 {
-                            let problem = "one entry of a list cannot be taken out";
-                            let mut error = refuse(problem.to_string());
-                            error.allowed = format!("{}= for the whole list", rest[0]);
-                            return Err(error);
-                        }
-                        let DeValue::Table(inner) = list.as_mut()[n].get_mut() else {
-                            return Err(refuse(format!("entry {n} is not a table")));
-                        };
-                        table = inner;
-                        &inside[1..]
-                    }
-                    _ => return Err(refuse(format!("`{}` is not a table here", rest[0]))),
-                },
-                ([], Some(_)) => return Ok(()),
-            };
-        }
+        remove(table, &names).map_err(refuse)
     }
 
     fn merge_table<'i>(
@@ -240,6 +202,32 @@ fn is_word(text: &str) -> bool {
 /// Gives the path of `name` in the table `parent`.
 pub fn join(parent: &str, name: &str) -> String {
     if parent.is_empty() { name.to_string() } else { format!("{parent}.{name}") }
+}
+
+/// Removes the value behind `names` from a table, if it is there; entries of lists are
+/// counted. Returns what is wrong with names that lead nowhere.
+fn remove(table: &mut DeTable<'_>, names: &[&str]) -> Result<(), String> {
+    let [name, inside @ ..] = names else { return Ok(()) };
+    if inside.is_empty() {
+        table.remove(*name);
+        return Ok(());
+    }
+    match (table.get_mut(*name).map(Spanned::get_mut), inside) {
+        (None, _) if name.parse::<usize>().is_ok() => Err("there is no list here".to_string()),
+        (None, _) => Ok(()),
+        (Some(DeValue::Table(inner)), _) => remove(inner, inside),
+        (Some(DeValue::Array(_)), [_]) => {
+            Err(format!("one entry of a list cannot be taken out, only all: {name}="))
+        }
+        (Some(DeValue::Array(list)), [n, inside @ ..]) => {
+            let entry = n.parse().ok().and_then(|n: usize| list.as_mut().get_mut(n));
+            match entry.map(Spanned::get_mut) {
+                Some(DeValue::Table(inner)) => remove(inner, inside),
+                _ => Err(format!("`{n}` is not an entry of this list")),
+            }
+        }
+        (Some(_), _) => Err(format!("`{name}` is not a table here")),
+    }
 }
 
 /// Writes the entries of lists in the key of a `KEY=VALUE` as `probe.0.name`, where messages

@@ -13,7 +13,7 @@ use crate::method::model::{Model, State};
 use crate::scene::{Motion, Scene};
 use nalgebra::SVector;
 
-/// Makes the model of a scene with D axes.
+/// Makes the model of a scene with D axes; D is [`Scene::dimension`], and a larger one panics.
 pub fn model<const D: usize>(scene: &Scene) -> Model<D> {
     let grid = grid::<D>(scene);
     let places = lattice::places(scene);
