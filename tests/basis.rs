@@ -6,10 +6,10 @@
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::method::basis::Basis;
 use lme_mpm::method::basis::lme::Failure;
 use lme_mpm::method::basis::scattered::NodeValues;
 use lme_mpm::method::basis::scattered::values_at as lme_at;
+use lme_mpm::method::basis::{Basis, Support};
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::method::grid::Grid;
 use lme_mpm::output::figure::{self, Axes};
@@ -20,7 +20,7 @@ use test_case::test_case;
 const UGIMP: Basis = Basis::Ugimp { half_length: [0.25, 0.5, 0.125] };
 
 const fn lme(gamma: f64) -> Basis {
-    Basis::Lme { gamma, cutoff: 1e-6 }
+    Basis::Lme { gamma, cutoff: 1e-6, support: Support::Ball }
 }
 
 const LENGTH: [f64; 3] = [0.7, 1.3, 0.4];
@@ -82,7 +82,9 @@ fn check_slope<const D: usize>(basis: &Basis, s: [f64; 3]) {
     let inside = |d: usize| grid.before[d] as f64 * 0.0 + 1.0 + 0.3 + 0.06 * s[d];
     let x = SVector::<f64, D>::from_fn(|d, _| inside(d) * grid.h[d]);
     let all = match basis {
-        Basis::Lme { gamma, .. } => Basis::Lme { gamma: *gamma, cutoff: 0.0 },
+        Basis::Lme { gamma, .. } => {
+            Basis::Lme { gamma: *gamma, cutoff: 0.0, support: Support::Ball }
+        }
         other => *other,
     };
     let here = row(&all, &grid, x);
@@ -288,7 +290,7 @@ fn lme_becomes_linear() {
     let mut last = f64::INFINITY;
     for gamma in [4.0, 8.0, 16.0, 32.0] {
         let linear = row(&Basis::Linear, &grid, x);
-        let lme = row(&Basis::Lme { gamma, cutoff: 0.0 }, &grid, x);
+        let lme = row(&Basis::Lme { gamma, cutoff: 0.0, support: Support::Ball }, &grid, x);
         let value = |row: &NodeValues<2>, I| row.iter().find(|v| v.0 == I).map_or(0.0, |v| v.1);
         let error = (0..grid.nodes())
             .map(|I| (value(&lme, I) - value(&linear, I)).abs())
@@ -328,7 +330,7 @@ fn lme_is_a_product_on_a_full_grid() {
         upper: Vector1::new(grid.upper[d]),
     };
     let x = Vector2::new(0.33, 0.77);
-    let basis = Basis::Lme { gamma: 1.3, cutoff: 0.0 };
+    let basis = Basis::Lme { gamma: 1.3, cutoff: 0.0, support: Support::Ball };
     let along: Vec<NodeValues<1>> =
         (0..2).map(|d| row(&basis, &line(d), Vector1::new(x[d]))).collect();
     for (I, N, grad) in row(&basis, &grid, x) {
@@ -447,7 +449,7 @@ fn serve_random_points<const D: usize>(tables: usize, points: usize, cells: usiz
     let (mut evaluations, mut iterations) = (0, 0);
     for _ in 0..tables {
         let gamma = libm::exp10(-3.0 + 6.0 * random());
-        let basis = Basis::Lme { gamma, cutoff: 1e-6 };
+        let basis = Basis::Lme { gamma, cutoff: 1e-6, support: Support::Ball };
         let mut coordinate = || {
             let near = libm::exp10(-16.0 * random()) * 0.5;
             [random(), near, 1.0 - near][(3.0 * random()) as usize]

@@ -147,7 +147,10 @@ fn bad_set() {
         ("probe.7.position=0", &["--set probe.7.position=0", "a number from 0 to 1"]),
         ("grid.cells=", &["grid.cells: this key is missing", "from 1 up"]),
         ("basis.gama=", &["--set basis.gama=", "did you mean `basis.gamma`?"]),
-        ("probe.component=", &["--set probe.component=", "`probe` is not a table here"]),
+        (
+            "probe.component=",
+            &["--set probe.component=", "`component` is not an entry of this list"],
+        ),
         ("=", &["--set =", "not known"]),
     ];
     for (set, words) in cases {

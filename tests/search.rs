@@ -2,8 +2,8 @@
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::method::basis::Basis;
 use lme_mpm::method::basis::bins::Bins;
+use lme_mpm::method::basis::{Basis, Support};
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::method::cost::Cost;
 use lme_mpm::method::time::otm;
@@ -112,7 +112,7 @@ fn row(basis: &Basis, nodes: &[f64], x: &[f64]) -> (Option<Vec<f64>>, Cost) {
 /// more nodes to be seen.
 #[test]
 fn otm_search_widens_step_by_step() {
-    let basis = Basis::Lme { gamma: 4.0, cutoff: 1e-6 };
+    let basis = Basis::Lme { gamma: 4.0, cutoff: 1e-6, support: Support::Ball };
     // R = 1.86, then 2.79, which sees 0 and 5 but not −0.6.
     let (found, _) = row(&basis, &[-0.6, 0.0, 5.0], &[2.4]);
     let found = found.unwrap();
@@ -126,7 +126,7 @@ fn otm_search_widens_step_by_step() {
 /// What two points cost is what each of them costs.
 #[test]
 fn otm_costs_add_up() {
-    let basis = Basis::Lme { gamma: 1.8, cutoff: 1e-6 };
+    let basis = Basis::Lme { gamma: 1.8, cutoff: 1e-6, support: Support::Ball };
     let nodes = [0.0, 0.9, 2.1, 3.0, 4.2];
     let of = |x: &[f64]| row(&basis, &nodes, x).1;
     let (one, other, both) = (of(&[1.3]), of(&[2.6]), of(&[1.3, 2.6]));

@@ -9,7 +9,7 @@ use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 use comfy_table::{CellAlignment, Table, presets};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use lme_mpm::method::basis::Basis;
+use lme_mpm::method::basis::{Basis, Support};
 use lme_mpm::output::summary::SummaryLine;
 use lme_mpm::output::{files, report};
 use lme_mpm::port::check::{self, Tolerance};
@@ -167,9 +167,11 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
         BasisName::Linear => Basis::Linear,
         BasisName::Ugimp => Basis::Ugimp { half_length: [half; 3] },
         BasisName::Bspline => Basis::BSpline,
-        BasisName::Lme => {
-            Basis::Lme { gamma: arguments.gamma.unwrap_or(1.0), cutoff: arguments.cutoff }
-        }
+        BasisName::Lme => Basis::Lme {
+            gamma: arguments.gamma.unwrap_or(1.0),
+            cutoff: arguments.cutoff,
+            support: Support::Ball,
+        },
     };
     let read =
         |path: &Path| Points::read(&path.display().to_string(), open(path)?, &points::COORDINATES);

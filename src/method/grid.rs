@@ -1,6 +1,6 @@
 //! The background grid says where nodes stand, and which cell holds a point.
 
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector1};
 
 /// Counts through all index tuples below `count`, the first axis fastest; by carrying, since a
 /// division per tuple would cost more than what is done with it.
@@ -46,6 +46,13 @@ pub struct Located<const D: usize> {
     pub xi: SVector<f64, D>,
 }
 
+impl<const D: usize> Located<D> {
+    /// Sees the point along axis d only.
+    pub fn axis(&self, d: usize) -> Located<1> {
+        Located { cell: [self.cell[d]], xi: Vector1::new(self.xi[d]) }
+    }
+}
+
 impl<const D: usize> Grid<D> {
     /// Lays a grid of `cells` cells over a body of `length` (m) along each axis, and
     /// `beyond` cells more before and after it.
@@ -56,6 +63,16 @@ impl<const D: usize> Grid<D> {
             cells: std::array::from_fn(|d| beyond[d][0] + cells[d] + beyond[d][1]),
             before: std::array::from_fn(|d| beyond[d][0]),
             upper: SVector::from_fn(|d, _| length[d] + beyond[d][1] as f64 * h[d]),
+        }
+    }
+
+    /// Gives the grid of axis d by itself.
+    pub fn axis(&self, d: usize) -> Grid<1> {
+        Grid {
+            h: Vector1::new(self.h[d]),
+            cells: [self.cells[d]],
+            before: [self.before[d]],
+            upper: Vector1::new(self.upper[d]),
         }
     }
 

@@ -149,7 +149,7 @@ fn shape_in<const D: usize>(
     let mut rows = Vec::new();
     for (n, x) in points.vectors::<D>().iter().enumerate() {
         let values = match (basis, &grid) {
-            (Basis::Lme { gamma, cutoff }, _) => values_at(&place, spacing, *gamma, *cutoff, x)
+            (Basis::Lme { gamma, cutoff, .. }, _) => values_at(&place, spacing, *gamma, *cutoff, x)
                 .map(|(values, _)| values)
                 .map_err(|failure| {
                     let allowed =

@@ -117,6 +117,14 @@ pub const KEYS: &[Key] = &[
         "Nodes with exp(−γ|ξ|²) below it are cut off",
     )
     .with("basis.kind", "lme"),
+    may(
+        "basis.support",
+        Choice(&["box", "ball"]),
+        Without::Word("box"),
+        "Whether the cut-off leaves the nodes of a box or of a ball, which in 1D are one",
+    )
+    .with("basis.kind", "lme")
+    .besides("not with the method \"otm\", whose nodes stand on no grid"),
     must("time", Table, "The scheme and its time step"),
     must(
         "time.integrator",

@@ -3,7 +3,7 @@
 use super::fault::SceneError;
 use super::parts::{GridSpec, Time};
 use super::values::Values;
-use crate::method::basis::Basis;
+use crate::method::basis::{Basis, Support};
 use crate::method::choice::Integrator;
 use crate::method::reading::{StepEight, StressUpdate};
 
@@ -61,6 +61,11 @@ pub fn basis(values: &Values, grid: &GridSpec) -> Result<Basis, Box<SceneError>>
         "lme" => Ok(Basis::Lme {
             gamma: values.number("basis.gamma")?,
             cutoff: values.number("basis.cutoff")?,
+            support: match values.word("method")? {
+                "otm" => Support::Ball, // its nodes stand on no grid
+                _ => values
+                    .choose("basis.support", &[("box", Support::Box), ("ball", Support::Ball)])?,
+            },
         }),
         other => Err(values.error("basis.kind", format!("\"{other}\" is not known here"))),
     }
@@ -77,6 +82,9 @@ pub fn otm(values: &Values) -> Result<(), Box<SceneError>> {
     if !(kind == "lme" || (kind == "linear" && values.dimension() == 1)) {
         let problem = "the basis lives on moving nodes";
         return refuse("basis.kind", problem, "\"lme\", in 1D also \"linear\"");
+    }
+    if values.has("basis.support") {
+        return refuse("basis.support", "there is no grid to lay a box on", "no such key");
     }
     if values.word("time.integrator")? != "newmark" {
         return refuse("time.integrator", "time goes by central differences", "\"newmark\"");

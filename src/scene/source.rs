@@ -216,7 +216,7 @@ fn remove(table: &mut DeTable<'_>, names: &[&str]) -> Result<(), String> {
         (None, _) if name.parse::<usize>().is_ok() => Err("there is no list here".to_string()),
         (None, _) => Ok(()),
         (Some(DeValue::Table(inner)), _) => remove(inner, inside),
-        (Some(DeValue::Array(_)), [_]) => {
+        (Some(DeValue::Array(_)), [n]) if n.parse::<usize>().is_ok() => {
             Err(format!("one entry of a list cannot be taken out, only all: {name}="))
         }
         (Some(DeValue::Array(list)), [n, inside @ ..]) => {

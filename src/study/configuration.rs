@@ -8,12 +8,13 @@ use std::path::Path;
 
 /// These keys are what a study varies. A configuration answers for all of them: what the scene
 /// says of them itself is taken out first.
-pub const KEYS: [&str; 14] = [
+pub const KEYS: [&str; 15] = [
     "method",
     "mass",
     "basis.kind",
     "basis.gamma",
     "basis.cutoff",
+    "basis.support",
     "time.integrator",
     "time.reading",
     "time.stress_update",

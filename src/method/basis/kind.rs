@@ -18,9 +18,21 @@ pub enum Basis {
         gamma: f64,
         /// Nodes with exp(−γ|ξ|²) below this are left out.
         cutoff: f64,
+        /// What |ξ| is in the cut-off.
+        support: Support,
     },
     /// Quadratic B-splines centred at the nodes.
     BSpline,
+}
+
+/// The cut-off of local max-ent leaves a box of nodes, or a ball.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Support {
+    /// |ξ| is the largest distance along an axis: the functions are products of those of
+    /// one axis.
+    Box,
+    /// |ξ| is the distance.
+    Ball,
 }
 
 impl Basis {
@@ -46,7 +58,7 @@ impl Basis {
         match self {
             Basis::Linear => 2.0,
             Basis::Ugimp { .. } | Basis::BSpline => 3.0,
-            Basis::Lme { gamma, cutoff } => (2.0 * radius(*gamma, *cutoff) + 2.0).min(nodes),
+            Basis::Lme { gamma, cutoff, .. } => (2.0 * radius(*gamma, *cutoff) + 2.0).min(nodes),
         }
     }
 }

@@ -11,14 +11,14 @@ pub mod support;
 pub mod tensor;
 pub mod ugimp;
 
-pub use kind::Basis;
+pub use kind::{Basis, Support};
 pub use scratch::Scratch;
 
 use super::breakdown::Breakdown;
 use super::continuum::shape::Shape;
 use super::grid::{Grid, Located};
 use nalgebra::SVector;
-use support::{Width, radius, row_on_grid};
+use support::{Width, radius, row_in_box, row_on_grid};
 use tensor::{Line, product_row};
 
 // ANCHOR: tabulate
@@ -40,17 +40,23 @@ pub fn fill_from_grid<const D: usize>(
     for (p, x_p) in x.iter().enumerate() {
         let at = grid.locate(x_p).ok_or_else(|| outside(p, x_p))?;
         match basis {
-            Basis::Lme { gamma, cutoff } => {
+            Basis::Lme { gamma, cutoff, support } => {
                 let width = Width { gamma: *gamma, reach: radius(*gamma, *cutoff) };
-                row_on_grid(shape, &mut scratch.lme, &mut lambda[p], width, grid, &at)
-                    .map_err(|failure| Breakdown::NoBasis { particle: p, failure })?;
+                match support {
+                    Support::Box => row_in_box(shape, scratch, &mut lambda[p], width, grid, &at),
+                    Support::Ball => {
+                        row_on_grid(shape, &mut scratch.lme, &mut lambda[p], width, grid, &at)
+                    }
+                }
+                .map_err(|failure| Breakdown::NoBasis { particle: p, failure })?;
             }
             _ => {
                 let lines = lines(basis, grid, &at).ok_or_else(|| Breakdown::ReachesBeyond {
                     particle: p,
                     position: x_p.iter().copied().collect(),
                 })?;
-                product_row(shape, grid, &lines);
+                let count = std::array::from_fn(|d| lines[d].len());
+                product_row(shape, grid, count, |d, n| lines[d].entry(n));
             }
         }
         shape.end_row();

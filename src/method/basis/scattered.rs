@@ -44,7 +44,7 @@ pub fn fill_from_nodes<const D: usize>(
     shape.clear();
     let width = match basis {
         // At least the nodes of a cell, however narrow the functions.
-        Basis::Lme { gamma, cutoff } => {
+        Basis::Lme { gamma, cutoff, .. } => {
             Some(Width { gamma: *gamma, reach: radius(*gamma, *cutoff).max(1.0) })
         }
         _ => None,
@@ -76,7 +76,7 @@ fn row_among_nodes<const D: usize>(
     nodes: Places<D>,
     x_p: &SVector<f64, D>,
 ) -> Result<(), Failure> {
-    let Scratch { lme, bins, cost } = scratch;
+    let Scratch { lme, bins, cost, .. } = scratch;
     let place = x_p.component_div(nodes.h);
     let mut widenings = 0;
     *lambda = loop {

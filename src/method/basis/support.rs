@@ -1,9 +1,11 @@
 //! Says which nodes of a grid local max-ent sees.
 
 use super::lme::{Failure, Lme, max_ent_row};
+use super::scratch::Scratch;
+use super::tensor::product_row;
 use crate::method::continuum::shape::Shape;
 use crate::method::grid::{Grid, Located};
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector1};
 
 // ANCHOR: lme_support
 /// Gives the cut-off radius R/h = √(−ln tol/γ): beyond it exp(−γ|ξ|²) < tol. A tolerance of 0
@@ -55,6 +57,34 @@ pub fn row_on_grid<const D: usize>(
     Ok(())
 }
 // ANCHOR_END: lme_grid
+
+// ANCHOR: lme_box
+/// Writes one row of local max-ent cut off by a box: the functions of each axis by
+/// themselves, and their product. `lambda` starts the search for λ h along each axis, and
+/// holds what was found.
+///
+/// Errors: [`Failure`].
+pub fn row_in_box<const D: usize>(
+    shape: &mut Shape<D>,
+    scratch: &mut Scratch<D>,
+    lambda: &mut SVector<f64, D>,
+    width: Width,
+    grid: &Grid<D>,
+    at: &Located<D>,
+) -> Result<(), Failure> {
+    let Scratch { axis_lme, axes, .. } = scratch;
+    axes.clear();
+    for d in 0..D {
+        let mut lambda_d = Vector1::new(lambda[d]);
+        row_on_grid(axes, axis_lme, &mut lambda_d, width, &grid.axis(d), &at.axis(d))?;
+        axes.end_row();
+        lambda[d] = lambda_d[0];
+    }
+    let count = std::array::from_fn(|d| axes.of(d).count());
+    product_row(shape, grid, count, |d, n| axes.pair(d, n));
+    Ok(())
+}
+// ANCHOR_END: lme_box
 
 /// Gives the λ h that the two nodes of the cell along each axis alone would have: with it their
 /// weights are 1 − s and s.

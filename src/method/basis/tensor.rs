@@ -22,20 +22,34 @@ impl Line {
         self.slope[self.len] = slope;
         self.len += 1;
     }
+
+    /// Counts the nodes.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Gives entry n: node, N and slope.
+    pub fn entry(&self, n: usize) -> (usize, f64, f64) {
+        (self.node[n], self.N[n], self.slope[n])
+    }
 }
 
 // ANCHOR: tensor
-/// Writes one row of the table from one `Line` for each axis: N_Ip = Π_d N_d, and
-/// ∂N_Ip/∂x_i has the slope in place of factor i. The first axis runs fastest.
-pub fn product_row<const D: usize>(shape: &mut Shape<D>, grid: &Grid<D>, lines: &[Line; D]) {
-    for at in odometer::<D>(std::array::from_fn(|d| lines[d].len)) {
-        let I = grid.node(std::array::from_fn(|d| lines[d].node[at[d]]));
-        let N_Ip = (0..D).map(|d| lines[d].N[at[d]]).product();
+/// Writes one row of the table as a product over the axes: N_Ip = Π_d N_d, and
+/// ∂N_Ip/∂x_i has the slope in place of factor i. `factor(d, n)` gives entry n of axis d,
+/// node, N and slope, and `count` the number of entries. The first axis runs fastest.
+pub fn product_row<const D: usize>(
+    shape: &mut Shape<D>,
+    grid: &Grid<D>,
+    count: [usize; D],
+    factor: impl Fn(usize, usize) -> (usize, f64, f64),
+) {
+    for at in odometer::<D>(count) {
+        let factors: [_; D] = std::array::from_fn(|d| factor(d, at[d]));
+        let I = grid.node(std::array::from_fn(|d| factors[d].0));
+        let N_Ip = factors.iter().map(|(_, N, _)| *N).product();
         let grad_N_Ip = SVector::from_fn(|i, _| {
-            let factor = |d: usize| {
-                if d == i { lines[d].slope[at[d]] } else { lines[d].N[at[d]] }
-            };
-            (0..D).map(factor).product()
+            (0..D).map(|d| if d == i { factors[d].2 } else { factors[d].1 }).product()
         });
         shape.push(I, N_Ip, grad_N_Ip);
     }

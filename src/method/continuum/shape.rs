@@ -26,6 +26,12 @@ pub struct Shape<const D: usize> {
 }
 // ANCHOR_END: shape
 
+impl<const D: usize> Default for Shape<D> {
+    fn default() -> Self {
+        Shape::blank(0)
+    }
+}
+
 impl<const D: usize> Shape<D> {
     /// Makes a table in which each of `particles` sees no node.
     pub fn blank(particles: usize) -> Self {
@@ -71,6 +77,12 @@ impl<const D: usize> Shape<D> {
         self.entry[self.start[p]..self.start[p + 1]]
             .iter()
             .map(|entry| (entry.I, entry.N, &entry.grad_N))
+    }
+
+    /// Gives entry n of row p: node, N and the first component of its gradient.
+    pub fn pair(&self, p: usize, n: usize) -> (usize, f64, f64) {
+        let pair = &self.entry[self.start[p] + n];
+        (pair.I, pair.N, pair.grad_N[0])
     }
     // ANCHOR_END: pairs
 }
