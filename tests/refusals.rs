@@ -370,6 +370,12 @@ fn bad_shape_input() {
         (shape(&lme, "nan.csv", "x\n0\n"), &["nan.csv, line 3", "`NaN`", "finite"]),
         (shape(&lme, "line.csv", "x,y,z,w\n"), &["-, line 1", "x or x,y or x,y,z"]),
         (shape(&["lme"], "line.csv", "x\n0\n"), &["--gamma"]),
+        (shape(&["linear", "--gamma", "1"], "line.csv", "x\n0\n"), &["--gamma", "lme only"]),
+        (shape(&["bspline", "--cutoff", "0"], "line.csv", "x\n0\n"), &["--cutoff", "lme only"]),
+        (
+            shape(&["lme", "--gamma", "1", "--half-length", "0.02"], "line.csv", "x\n0\n"),
+            &["--half-length", "ugimp only"],
+        ),
         (shape(&["lme", "--gamma", "-1"], "line.csv", "x\n0\n"), &["above 0"]),
         (shape(&["lme", "--gamma", "1e-310"], "line.csv", "x\n0\n"), &["at least 1e-307"]),
         (shape(&["ugimp", "--half-length", "0.06"], "line.csv", "x\n0\n"), &["--half-length"]),

@@ -239,9 +239,9 @@ pub struct ShapeArguments {
     /// γ = βh² of lme
     #[arg(long, value_name = "G", required_if_eq("basis", "lme"), value_parser = positive, allow_negative_numbers = true)]
     pub gamma: Option<f64>,
-    /// lme leaves out nodes with exp(−γ|ξ|²) below it; 0 leaves out none
-    #[arg(long, value_name = "TOL", default_value_t = 1e-6, value_parser = fraction, allow_negative_numbers = true)]
-    pub cutoff: f64,
+    /// lme leaves out nodes with exp(−γ|ξ|²) below it, 1e-6 without it; 0 leaves out none
+    #[arg(long, value_name = "TOL", value_parser = fraction, allow_negative_numbers = true)]
+    pub cutoff: Option<f64>,
     /// Half the length of a particle of ugimp (m), at most H/2
     #[arg(long, value_name = "LP", required_if_eq("basis", "ugimp"), value_parser = positive, allow_negative_numbers = true)]
     pub half_length: Option<f64>,
@@ -253,7 +253,7 @@ pub struct ShapeArguments {
     pub points: PathBuf,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum BasisName {
     Linear,
     Ugimp,

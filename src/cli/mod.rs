@@ -155,6 +155,17 @@ fn exact(scene: &Path, points: &Path) -> Result<(), Fault> {
 
 fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
     let spacing = arguments.spacing;
+    let (lme, ugimp) = (arguments.basis == BasisName::Lme, arguments.basis == BasisName::Ugimp);
+    for (argument, foreign, allowed) in [
+        ("--gamma", arguments.gamma.is_some() && !lme, "with --basis lme only"),
+        ("--cutoff", arguments.cutoff.is_some() && !lme, "with --basis lme only"),
+        ("--half-length", arguments.half_length.is_some() && !ugimp, "with --basis ugimp only"),
+    ] {
+        if foreign {
+            let problem = "it means nothing to this basis".to_string();
+            return Err(Fault::Argument { argument, problem, allowed });
+        }
+    }
     let half = arguments.half_length.map_or(0.5, |half| half / spacing);
     if half > 0.5 {
         return Err(Fault::Argument {
@@ -169,7 +180,7 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
         BasisName::Bspline => Basis::BSpline,
         BasisName::Lme => Basis::Lme {
             gamma: arguments.gamma.unwrap_or(1.0),
-            cutoff: arguments.cutoff,
+            cutoff: arguments.cutoff.unwrap_or(1e-6),
             support: Support::Ball,
         },
     };
