@@ -81,6 +81,48 @@ fn scenes_words_are_understood() {
     assert!(words > 30, "{words}");
 }
 
+/// Every key is read: two different values of it make two different scenes. Of each table one
+/// shipped scene that has it is taken; the right side and x stand for all sides and axes.
+#[test]
+fn scenes_keys_are_read() {
+    for key in KEYS {
+        let (mut text, [mut a, mut b]) = match (key.place().0, key.kind) {
+            (_, Kind::Table | Kind::List) => continue,
+            (_, Kind::Text | Kind::Name(_)) => (DYKA, ["'abc'", "'abd'"]),
+            (_, Kind::Flag) => (DYKA, ["true", "false"]),
+            (_, Kind::Choice(words) | Kind::ChoiceOrTable(words)) => (DYKA, [words[0], words[1]]),
+            (_, Kind::One(n) | Kind::PerAxis(n)) if n.whole => (DYKA, ["2", "3"]),
+            (_, Kind::One(_) | Kind::PerAxis(_)) => (DYKA, ["0.03", "0.04"]),
+        };
+        // Scenes and values where those do not fit.
+        (text, [a, b]) = match (key.place().0, key.path) {
+            (_, "body.length") => (text, ["0.14", "0.15"]),
+            (_, "body.ball.centre") => (DISCS, ["[0.3,0.2]", "[0.2,0.3]"]),
+            (_, "body.ball.radius") => (DISCS, ["0.1", "0.15"]),
+            (_, "basis.kind") => (text, ["linear", "ugimp"]),
+            (_, "time.integrator") => (text, ["newmark", "corrected-euler"]),
+            (_, "initial_velocity.to") => (text, ["0.12", "0.13"]),
+            (_, "probe.component") => (DISCS, ["x", "y"]),
+            (_, "output.vtk") => (DISCS, [a, b]),
+            ("basis" | "manufactured", _) => (MANUFACTURED, [a, b]), // with local max-ent
+            ("vibration", _) => (VIBRATION, [a, b]),
+            ("body_force", _) => (GRAVITY, [a, b]),
+            ("traction", _) => (TRACTION, [a, b]),
+            _ => (text, [a, b]),
+        };
+        let mut path = key.path.replace("<side>", "right").replace("<axis>", "x");
+        for list in ["body.ball.", "probe.", "initial_velocity."] {
+            path = path.replace(list, &format!("{list}0."));
+        }
+        let with = |value: &str| {
+            let mut sets = vec![format!("{path}={value}")];
+            sets.extend(key.with.map(|(other, word)| format!("{other}={word}")));
+            parse("test", "test.toml", text, &sets).unwrap_or_else(|error| panic!("{error}"))
+        };
+        assert_ne!(with(a), with(b), "nothing reads {}", key.path);
+    }
+}
+
 /// A key that is set to what holds without it changes nothing.
 #[test]
 fn scenes_defaults_are_what_is_read() {
