@@ -4,8 +4,9 @@
 use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::method::basis::lme::{Failure, plain};
-use lme_mpm::method::basis::scattered::values_at as lme_at;
-use lme_mpm::method::basis::{Basis, Support};
+use lme_mpm::method::basis::scattered::{Places, fill_from_nodes, values_at as lme_at};
+use lme_mpm::method::basis::{Basis, Scratch, Support};
+use lme_mpm::method::continuum::shape::Shape;
 use lme_mpm::method::grid::Grid;
 use lme_mpm::output::figure::{self, Axes};
 use nalgebra::{Matrix2, SVector, Vector1, Vector2};
@@ -385,6 +386,27 @@ fn lme_counts_its_exponentials() {
     assert_eq!(exponentials, 7 + 2 * iterations + 5);
     // In a corner nothing is solved; each of its two sides has one such node.
     assert_eq!(counts(0.8, &[[0.0, 4.0]]), (2, 0));
+}
+
+/// A search that starts at no number, or far off, finds what one from λ = 0 finds.
+#[test]
+fn lme_starts_anywhere() {
+    let grid = Grid::over([4.0; 2], [4; 2], [[0, 0]; 2]);
+    let nodes: Vec<_> = (0..grid.nodes()).map(|I| grid.position(I)).collect();
+    let (h, x) = (Vector2::repeat(1.0), [Vector2::new(1.3, 2.6)]);
+    let basis = Basis::Lme { gamma: 0.8, cutoff: 1e-6, support: Support::Ball };
+    let expected = on_nodes(&basis, &h, &nodes, &x).0;
+    for start in [f64::NAN, f64::INFINITY, 1e300, -1e3] {
+        let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
+        let (lambda, places) = (&mut [Vector2::repeat(start)], Places { x: &nodes, h: &h });
+        fill_from_nodes(&mut shape, &mut scratch, lambda, &basis, places, &x).unwrap();
+        assert_relative_eq!(lambda[0], expected.lambda[0], max_relative = 1e-13);
+        for ((I, N, grad), (J, M, slope)) in shape.of(0).zip(expected.shape.of(0)) {
+            assert_eq!(I, J);
+            assert_relative_eq!(N, M, epsilon = 1e-15);
+            assert_relative_eq!(grad, slope, epsilon = 1e-14);
+        }
+    }
 }
 
 /// One node alone spans nothing: no point is in its hull, not even its own place, where

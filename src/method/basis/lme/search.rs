@@ -94,12 +94,13 @@ fn begin<const D: usize>(
 }
 
 /// Takes Newton's step −J⁻¹ r and the largest relative change of a p_I by it,
-/// |Δλ·(ξ_I − r)|; `None` when J is singular.
+/// |Δλ·(ξ_I − r)|; `None` when J is singular, or when a moment is no number.
 fn step<const D: usize>(now: &Moments<D>, seen: &Seen<D>) -> Option<(SVector<f64, D>, f64)> {
     let step = -(now.J.try_inverse()? * now.r);
     let changes = seen.a.iter().map(|a| libm::fabs(step.dot(&(a - now.mean))));
-    let change = changes.fold(0.0, f64::max);
-    change.is_finite().then_some((step, change))
+    let change = changes.fold(0.0, f64::max); // which passes over what is no number
+    let finite = change.is_finite() && step.iter().all(|step| step.is_finite());
+    finite.then_some((step, change))
 }
 
 // ANCHOR: lme_damped
