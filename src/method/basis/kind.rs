@@ -1,6 +1,6 @@
 //! A model has one basis, of which the rest of the program asks some things.
 
-use super::support::radius;
+use super::support::{Width, radius};
 
 /// A basis is a family of shape functions; a scene has one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +36,16 @@ pub enum Support {
 }
 
 impl Basis {
+    /// Gives the width of local max-ent; the functions of the other bases have none to choose.
+    pub fn width(&self) -> Option<Width> {
+        match self {
+            Basis::Lme { gamma, cutoff, .. } => {
+                Some(Width { gamma: *gamma, reach: radius(*gamma, *cutoff) })
+            }
+            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline => None,
+        }
+    }
+
     /// Says whether each particle keeps a multiplier λ_p between tables.
     pub fn has_multiplier(&self) -> bool {
         match self {

@@ -18,7 +18,7 @@ use super::breakdown::Breakdown;
 use super::continuum::shape::Shape;
 use super::grid::{Grid, Located};
 use nalgebra::SVector;
-use support::{Width, radius, row_in_box, row_on_grid};
+use support::{row_in_box, row_on_grid};
 use tensor::{Line, product_row};
 
 // ANCHOR: tabulate
@@ -37,19 +37,17 @@ pub fn fill_from_grid<const D: usize>(
     x: &[SVector<f64, D>],
 ) -> Result<(), Breakdown> {
     shape.clear();
+    let width = basis.width();
     for (p, x_p) in x.iter().enumerate() {
         let at = grid.locate(x_p).ok_or_else(|| outside(p, x_p))?;
-        match basis {
-            Basis::Lme { gamma, cutoff, support } => {
-                let width = Width { gamma: *gamma, reach: radius(*gamma, *cutoff) };
-                match support {
-                    Support::Box => row_in_box(shape, scratch, &mut lambda[p], width, grid, &at),
-                    Support::Ball => {
-                        row_on_grid(shape, &mut scratch.lme, &mut lambda[p], width, grid, &at)
-                    }
+        match (basis, width) {
+            (Basis::Lme { support, .. }, Some(width)) => match support {
+                Support::Box => row_in_box(shape, scratch, &mut lambda[p], width, grid, &at),
+                Support::Ball => {
+                    row_on_grid(shape, &mut scratch.lme, &mut lambda[p], width, grid, &at)
                 }
-                .map_err(|failure| Breakdown::NoBasis { particle: p, failure })?;
             }
+            .map_err(|failure| Breakdown::NoBasis { particle: p, failure })?,
             _ => {
                 let lines = lines(basis, grid, &at).ok_or_else(|| Breakdown::ReachesBeyond {
                     particle: p,
@@ -66,8 +64,8 @@ pub fn fill_from_grid<const D: usize>(
 }
 // ANCHOR_END: tabulate
 
-/// Names a particle p that stands at `x_p` (m) outside the grid, reaches beyond it, or has a
-/// place that is no number.
+/// Names a particle p that stands at `x_p` (m) outside the grid, or has a place that is no
+/// number.
 fn outside<const D: usize>(p: usize, x_p: &SVector<f64, D>) -> Breakdown {
     match x_p.iter().all(|x| x.is_finite()) {
         true => Breakdown::LeftGrid { particle: p, position: x_p.iter().copied().collect() },

@@ -42,13 +42,8 @@ pub fn fill_from_nodes<const D: usize>(
     x: &[SVector<f64, D>],
 ) -> Result<(), Breakdown> {
     shape.clear();
-    let width = match basis {
-        // At least the nodes of a cell, however narrow the functions.
-        Basis::Lme { gamma, cutoff, .. } => {
-            Some(Width { gamma: *gamma, reach: radius(*gamma, *cutoff).max(1.0) })
-        }
-        _ => None,
-    };
+    // At least the nodes of a cell, however narrow the functions.
+    let width = basis.width().map(|width| Width { reach: width.reach.max(1.0), ..width });
     if let Some(Width { reach, .. }) = width {
         scratch.bins.sort(nodes.x, nodes.h, if reach.is_finite() { reach } else { 1.0 });
     }
