@@ -1,6 +1,8 @@
 //! Pictures are drawn as SVG: histories of probes, named curves, work and precision, particles.
 
+use super::summary::peak;
 use crate::run::table::Table;
+use crate::scene::keys::AXES;
 use crate::scene::{Probe, Scene};
 use kuva::prelude::*;
 use std::sync::Arc;
@@ -88,8 +90,8 @@ pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
     let column = |name: &str| history.column(name).unwrap_or_default();
     let (t, computed) = (column("t"), column(&probe.name));
     let exact = column(&format!("{}_exact", probe.name));
-    let (per_t, t_prefix) = prefix(largest(&t));
-    let (per_y, y_prefix) = prefix(largest(&computed).max(largest(&exact)));
+    let (per_t, t_prefix) = prefix(peak(&t));
+    let (per_y, y_prefix) = prefix(peak(&computed).max(peak(&exact)));
     let curve = |y: &[f64], colour, width, legend: &str| Curve {
         points: t.iter().zip(y).map(|(t, y)| (t * per_t, y * per_y)).collect(),
         colour,
@@ -216,7 +218,7 @@ pub fn particles(scene: &Scene, table: &Table, t: f64) -> String {
 
 /// Gives |v| of every particle in a table (m/s).
 fn speeds(table: &Table) -> Vec<f64> {
-    let axes = ["x", "y", "z"].map(|axis| table.column(&format!("velocity_{axis}")));
+    let axes = AXES.map(|axis| table.column(&format!("velocity_{axis}")));
     let square = |p: usize| axes.iter().flatten().map(|v| v[p] * v[p]).sum();
     (0..table.rows().len()).map(|p| libm::sqrt(square(p))).collect()
 }
@@ -224,7 +226,7 @@ fn speeds(table: &Table) -> Vec<f64> {
 /// Sorts points into classes of their speed (m/s), the fastest first.
 fn by_speed(places: &CurvePoints, speed: &[f64]) -> Vec<Plot> {
     const CLASSES: usize = 6;
-    let top = largest(speed);
+    let top = peak(speed);
     let (per_v, v_prefix) = prefix(top);
     let class = |v: f64| {
         if top > 0.0 { ((v / top * CLASSES as f64) as usize).min(CLASSES - 1) } else { 0 }
@@ -259,10 +261,6 @@ pub fn own_ids(svg: &str) -> String {
         out.push_str(&format!("clip-{}{rest}", at + 1));
     }
     out
-}
-
-fn largest(list: &[f64]) -> f64 {
-    list.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))
 }
 
 /// Finds the SI prefix that brings `largest` between 1 and 1000, and its factor.

@@ -99,7 +99,7 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<SummaryLin
 }
 
 /// Finds the largest size in a list.
-fn peak(list: &[f64]) -> f64 {
+pub fn peak(list: &[f64]) -> f64 {
     list.iter().fold(0.0, |peak: f64, x| peak.max(x.abs()))
 }
 

@@ -4,6 +4,7 @@
 use crate::run::Frame;
 use crate::run::table::{Table, shortest};
 use crate::scene::fault::Fault;
+use crate::scene::keys::AXES;
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataSet, IOBuffer, UnstructuredGridPiece,
     Version, VertexNumbers, Vtk,
@@ -62,8 +63,6 @@ fn vtu(particles: &Table) -> Result<Vec<u8>, Fault> {
     })?;
     Ok(bytes)
 }
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Names the columns of a vector.
 fn vector(name: &str) -> Vec<String> {

@@ -4,14 +4,13 @@ use super::table::Table;
 use crate::method::continuum::state::Particles;
 use crate::method::exact::Exact;
 use crate::scene::Scene;
+use crate::scene::keys::AXES;
 use nalgebra::SVector;
-
-const AXIS: [&str; 3] = ["x", "y", "z"];
 
 /// Names a component: `name` where there is one axis; `name_x`, `name_y` or `name_z` where
 /// there are more.
 pub fn per_axis(name: &str, axes: usize, i: usize) -> String {
-    if axes == 1 { name.to_string() } else { format!("{name}_{}", AXIS[i]) }
+    if axes == 1 { name.to_string() } else { format!("{name}_{}", AXES[i]) }
 }
 
 /// Makes the table of every particle in the scene's own coordinates at time `t`; its
@@ -39,7 +38,7 @@ pub fn table<const D: usize>(
         for (i, j) in (0..D).flat_map(|i| (i..D).map(move |j| (i, j))) {
             let name = || match D {
                 1 => "stress".to_string(),
-                _ => format!("stress_{}{}", AXIS[i], AXIS[j]),
+                _ => format!("stress_{}{}", AXES[i], AXES[j]),
             };
             table.put(name, particle.sigma[p][(i, j)]);
         }

@@ -1,4 +1,5 @@
-//! Multiplies functions of one coordinate, which linear, uGIMP and B-spline bases share.
+//! Multiplies functions of one coordinate, as all bases on a grid do but for local max-ent in a
+//! ball.
 
 use crate::method::continuum::shape::Shape;
 use crate::method::grid::{Grid, odometer};

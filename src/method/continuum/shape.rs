@@ -78,11 +78,13 @@ impl<const D: usize> Shape<D> {
             .iter()
             .map(|entry| (entry.I, entry.N, &entry.grad_N))
     }
+    // ANCHOR_END: pairs
+}
 
-    /// Gives entry n of row p: node, N and the first component of its gradient.
+impl Shape<1> {
+    /// Gives entry n of row p: node, N (–) and dN/dx (1/m).
     pub fn pair(&self, p: usize, n: usize) -> (usize, f64, f64) {
         let pair = &self.entry[self.start[p] + n];
         (pair.I, pair.N, pair.grad_N[0])
     }
-    // ANCHOR_END: pairs
 }
