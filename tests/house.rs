@@ -229,18 +229,18 @@ fn house_is_on_the_map() {
 /// The files of a room in lines: its own first, then each folder with what is in it.
 fn shelves(files: &[String]) -> Vec<String> {
     let mut lines: Vec<(String, Vec<&str>)> = vec![(String::new(), Vec::new())];
-    for file in files {
-        let (folder, name) = file.split_once("::").unwrap_or(("", file));
-        let is_folder = files.iter().any(|other| other.starts_with(&format!("{file}::")));
+    let is_folder =
+        |file: &&String| files.iter().any(|other| other.starts_with(&format!("{file}::")));
+    for file in files.iter().filter(|file| !is_folder(file)) {
+        let (folder, name) = file.rsplit_once("::").unwrap_or(("", file));
         match lines.iter_mut().find(|(known, _)| known == folder) {
-            Some((_, names)) if !is_folder => names.push(name),
+            Some((_, names)) => names.push(name),
             None => lines.push((folder.to_string(), vec![name])),
-            _ => {}
         }
     }
-    let line = |(folder, names): &(String, Vec<&str>)| match folder.as_str() {
-        "" => names.join(", "),
-        folder => format!("{folder}/ {}", names.join(", ")),
+    let line = |(folder, names): &(String, Vec<&str>)| match folder {
+        folder if folder.is_empty() => names.join(", "),
+        folder => format!("{}/ {}", folder.replace("::", "/"), names.join(", ")),
     };
     lines.iter().map(line).collect()
 }
