@@ -15,6 +15,8 @@ struct Definition {
     line: usize,
     /// The first line of its docstring.
     says: String,
+    /// It is called behind a point.
+    is_method: bool,
 }
 
 /// All definitions of the library and its tests by name.
@@ -47,7 +49,8 @@ impl Definitions {
             for (token, kind, line) in tokens(text) {
                 if kind == TokenKind::Ident && DEFINES.contains(&previous) {
                     let says = docstring(&lines, line);
-                    let definition = Definition { file: file.clone(), line, says };
+                    let is_method = takes_self(&lines[line - 1..]);
+                    let definition = Definition { file: file.clone(), line, says, is_method };
                     by_name.entry(token.to_string()).or_default().push(definition);
                 }
                 if !matches!(kind, TokenKind::Whitespace) {
@@ -58,10 +61,11 @@ impl Definitions {
         Ok(Definitions { by_name, files })
     }
 
-    /// The one definition that `name` in `file` can mean: the only one in that
-    /// file, else in its folder, else in the library.
-    fn find(&self, name: &str, file: &str) -> Option<&Definition> {
-        let all = self.by_name.get(name)?;
+    /// The one definition that `name` in `file` can mean, behind a point or not: the only one
+    /// in that file, else in its folder, else in the library.
+    fn find(&self, name: &str, file: &str, behind_point: bool) -> Option<&Definition> {
+        let all = self.by_name.get(name)?.iter();
+        let all: Vec<_> = all.filter(|found| found.is_method || !behind_point).collect();
         let folder = file.rsplit_once('/').map_or("", |(folder, _)| folder);
         for near in [file, folder, "src/"] {
             match all.iter().filter(|found| found.file.starts_with(near)).collect::<Vec<_>>()[..] {
@@ -118,7 +122,7 @@ impl Definitions {
                 TokenKind::Literal { kind: LiteralKind::Str { .. }, .. } => "string",
                 TokenKind::Literal { .. } => "number",
                 TokenKind::Lifetime { .. } => "keyword",
-                TokenKind::Ident => match self.find(token, file) {
+                TokenKind::Ident => match self.find(token, file, before == ".") {
                     Some(found) if names_definition(token, before, after) => {
                         let title = format!("{}:{} {}", found.file, found.line, found.says);
                         let page = page_of(&found.file);
@@ -178,12 +182,21 @@ impl Definitions {
 /// defined; a variable or a field may have a function's name by chance, and so
 /// may a method of the standard library.
 fn names_definition(token: &str, before: &str, after: &str) -> bool {
-    const STANDARD: &[&str] =
-        &["clear", "column", "find", "last", "len", "position", "push", "rows", "run"];
+    const STANDARD: &[&str] = &[
+        "clear", "column", "contains", "count", "filter", "last", "len", "parse", "position",
+        "push", "rows", "sort", "sum", "values",
+    ];
     let type_or_constant = token.len() > 1 && token.starts_with(char::is_uppercase);
     let called = after == "(" || after == "<";
     let foreign = before == "." && STANDARD.contains(&token);
     type_or_constant || (called && !foreign)
+}
+
+/// True where the function that begins in the first line has a receiver.
+fn takes_self(lines: &[&str]) -> bool {
+    let inside = lines[0].split_once('(').map_or("", |(_, inside)| inside);
+    let first = if inside.is_empty() { lines.get(1).unwrap_or(&"") } else { &inside };
+    ["self", "&self", "mut self", "&mut self"].iter().any(|own| first.trim().starts_with(own))
 }
 
 /// `src/time/steps.rs` → `source/src/time/steps.html`.
