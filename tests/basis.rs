@@ -129,7 +129,7 @@ fn check_units<const D: usize>(basis: &Basis, s: [f64; 3]) {
     let (grid, x) = (grid::<D>(), point::<D>(basis, s));
     for k in [-300.0, -1.0, 7.0, 300.0] {
         let unit = libm::exp2(k);
-        let scaled = Grid { h: grid.h * unit, upper: grid.upper * unit, ..grid.clone() };
+        let scaled = Grid::new(grid.h * unit, grid.cells, grid.before, grid.upper * unit);
         let (here, there) = (row(basis, &grid, x), row(basis, &scaled, x * unit));
         assert_eq!(here.len(), there.len());
         for (a, b) in here.iter().zip(&there) {
@@ -323,11 +323,9 @@ fn lme_on_a_simplex() {
 #[test]
 fn lme_is_a_product_on_a_full_grid() {
     let grid = grid::<2>();
-    let line = |d: usize| Grid::<1> {
-        h: Vector1::new(grid.h[d]),
-        cells: [grid.cells[d]],
-        before: [grid.before[d]],
-        upper: Vector1::new(grid.upper[d]),
+    let line = |d: usize| {
+        let [h, upper] = [grid.h[d], grid.upper[d]].map(Vector1::new);
+        Grid::new(h, [grid.cells[d]], [grid.before[d]], upper)
     };
     let x = Vector2::new(0.33, 0.77);
     let basis = Basis::Lme { gamma: 1.3, cutoff: 0.0, support: Support::Ball };

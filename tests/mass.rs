@@ -11,7 +11,7 @@ use lme_mpm::method::grid::Grid;
 use lme_mpm::method::model::{Model, State};
 use lme_mpm::run::run;
 use lme_mpm::scene::Scene;
-use nalgebra::{DMatrix, DVector, SVector, Vector1, Vector2};
+use nalgebra::{DMatrix, DVector, Vector1, Vector2};
 
 /// A scene's particles, moved off their places, with masses that differ, and
 /// tabulated; nodes with m_I and p_I.
@@ -28,8 +28,7 @@ fn loose<const D: usize>(scene: &Scene) -> (Model<D>, State<D>) {
         particle.m[p] *= 1.0 + 0.3 * (0.9 * s).cos();
     }
     state.shape = on_grid(&model.basis, &model.grid, &state.particle.x).unwrap().shape;
-    sums::lumped_mass(&mut state.node, &state.particle, &state.shape);
-    sums::momentum(&mut state.node, &state.particle, &state.shape);
+    sums::mass_and_momentum(&mut state.node, &state.particle, &state.shape);
     (model, state)
 }
 
@@ -75,18 +74,16 @@ fn mass_solves_what_13_says() {
         }
         let mut mass = consistent(n, &model.fixed);
         mass.assemble(particle, shape, &node.m).unwrap();
-        mass.solve(&mut node.mv, &node.p, &node.m);
-        let v = DVector::from_fn(
-            n,
-            |I, _| if node.m[I] > 0.0 { node.mv[I][0] / node.m[I] } else { 0.0 },
-        );
+        mass.solve(&mut node.v, &node.p, &node.m);
+        let v = DVector::from_fn(n, |I, _| node.v[I][0]);
         let scale = largest(node.p.iter().map(|p| p[0]));
         for I in 0..n {
             let product: f64 = (0..n).map(|J| M[(I, J)] * v[J]).sum();
             assert!((product - node.p[I][0]).abs() < 1e-12 * scale, "{name}, node {I}");
         }
-        let total = |p: &[SVector<f64, 1>]| p.iter().map(|p| p[0]).sum::<f64>();
-        assert_relative_eq!(total(&node.mv), total(&node.p), epsilon = 1e-12 * scale);
+        let brought: f64 = node.p.iter().map(|p| p[0]).sum();
+        let carried: f64 = (0..n).map(|I| node.m[I] * node.v[I][0]).sum();
+        assert_relative_eq!(carried, brought, epsilon = 1e-12 * scale);
         assert_eq!((mass.cost().factorizations, mass.cost().solves), (1, 1));
     }
 }
@@ -106,13 +103,13 @@ fn mass_finds_an_affine_velocity() {
         node.p.fill(Vector2::zeros());
         sums::momentum(node, particle, shape);
         mass.assemble(particle, shape, &node.m).unwrap();
-        mass.solve(&mut node.mv, &node.p, &node.m);
+        mass.solve(&mut node.v, &node.p, &node.m);
         // Light nodes beyond the body, one cell beyond each free side, are lumped.
         let inside = |I: usize| {
             let [i, j] = model.grid.index(I);
             (1..=6).contains(&i) && (1..=5).contains(&j) && node.m[I] > 0.0
         };
-        let off = |I: usize| (node.mv[I] / node.m[I] - affine(&model.grid.position(I))).norm();
+        let off = |I: usize| (node.v[I] - affine(&model.grid.position(I))).norm();
         largest((0..node.len()).filter(|I| inside(*I)).map(off))
     };
     let lumped = furthest_off(MassMatrix::Lumped);
@@ -138,10 +135,10 @@ fn mass_of_components_fixed_differently() {
         }
         let mut mass = consistent(node.len(), &model.fixed);
         mass.assemble(&state.particle, &state.shape, &node.m).unwrap();
-        mass.solve(&mut node.mv, &node.p, &node.m);
+        mass.solve(&mut node.v, &node.p, &node.m);
         assert_eq!((mass.cost().factorizations, mass.cost().solves), (systems, 2));
         for (I, i) in &model.fixed {
-            assert_eq!(node.mv[*I][*i], 0.0);
+            assert_eq!(node.v[*I][*i], 0.0);
         }
         // The second component by itself: fixed as the first is, or free.
         let others = if systems == 1 { model.fixed.clone() } else { Vec::new() };
@@ -150,10 +147,10 @@ fn mass_of_components_fixed_differently() {
             alone.node.p[*I][*i] = 0.0;
         }
         let mut mass = consistent(alone.node.len(), &others);
-        let Nodes { m, p, mv, .. } = &mut alone.node;
+        let Nodes { m, p, v, .. } = &mut alone.node;
         mass.assemble(&alone.particle, &alone.shape, m).unwrap();
-        mass.solve(mv, p, m);
-        for (together, alone) in state.node.mv.iter().zip(mv) {
+        mass.solve(v, p, m);
+        for (together, alone) in state.node.v.iter().zip(v) {
             assert_eq!(together[1], alone[1]);
         }
     }
@@ -184,7 +181,7 @@ fn mass_is_light_below_a_quarter() {
         particle.m = vec![1.0];
         let mut node = Nodes::<1>::blank(2);
         let Tabulated { shape, .. } = on_grid(&Basis::Linear, &grid, &particle.x).unwrap();
-        sums::lumped_mass(&mut node, &particle, &shape);
+        sums::mass_and_momentum(&mut node, &particle, &shape);
         consistent(2, &[]).assemble(&particle, &shape, &node.m)
     };
     assert!(assembled(0.25).is_err());

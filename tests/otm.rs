@@ -223,7 +223,7 @@ fn otm_inversion_is_named() {
     for (a, slope) in [(0, -1.0), (1, 1.0)] {
         shape.push(a, 0.5, Vector1::new(slope));
     }
-    shape.end_row();
+    shape.end_list();
     let (model, _) = at_start::<1>(&scene);
     let stopped = otm::deform(&mut particle, &node, &shape, &model, 1.0).unwrap_err();
     assert_eq!(stopped, Breakdown::Inverted { particle: 0, strain: -1.0 });

@@ -179,23 +179,24 @@ fn run_translation_changes_nothing() {
     }
 }
 
-/// Exponentials and Newton iterations are counted where there are some, less than three
-/// iterations per particle and step, and λ is carried only by the basis that needs it.
+/// Exponentials and Newton iterations are counted where there are some, and λ, its rate and
+/// place are carried only by the basis that needs them. One iteration finds λ in 1D: 1.05 per
+/// particle and step at most.
 #[test]
 fn run_cost_of_local_max_ent() {
     for basis in BASES {
         let (name, cost) = (basis.name, finished(&dyka(basis.sets)).cost);
         if ![LME_WIDE, LME_MIDDLE, LME_NARROW].contains(&basis) {
             assert_eq!((cost.exponentials, cost.newton_iterations), (0, 0), "{name}");
-            assert_eq!(cost.bytes_per_particle, 48, "{name}");
+            assert_eq!(cost.bytes_per_particle, 48 + 8, "{name}");
             continue;
         }
         let warm = cost.newton_iterations as f64 / cost.basis_evaluations as f64;
-        assert!((1.0..3.0).contains(&warm), "{name}: {warm} iterations per particle and step");
+        assert!((1.0..1.05).contains(&warm), "{name}: {warm} iterations per particle and step");
         // One for each axis and iteration, and the table of exp(−γk²).
         assert!(cost.exponentials >= cost.basis_evaluations, "{name}");
         assert!(cost.exponentials < cost.particle_node_pairs, "{name}");
-        assert_eq!(cost.bytes_per_particle, 48 + 8, "{name}");
+        assert_eq!(cost.bytes_per_particle, 48 + 8 + 24, "{name}");
     }
 }
 
@@ -214,7 +215,7 @@ fn run_cost_is_what_the_scene_needs() {
         assert_eq!(cost.particle_node_pairs, cost.basis_evaluations << dimension);
         assert_eq!((cost.exponentials, cost.newton_iterations), (0, 0));
         let d = dimension as u64;
-        assert_eq!(cost.bytes_per_particle, 8 * (2 + 2 * d + 2 * d * d));
+        assert_eq!(cost.bytes_per_particle, 8 * (2 + 3 * d + 2 * d * d));
     }
     assert_eq!(Particles::<1>::BYTES, 48);
 }

@@ -28,13 +28,11 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// Says whether particles and nodes keep an acceleration from step to step.
+    /// Says whether particles keep an acceleration from step to step.
     pub fn carries_acceleration(&self) -> bool {
         match self {
-            Integrator::GeneralizedAlpha { .. } => true,
-            Integrator::Newmark(_) | Integrator::ForwardEuler(_) | Integrator::CorrectedEuler => {
-                false
-            }
+            Integrator::Newmark(_) | Integrator::GeneralizedAlpha { .. } => true,
+            Integrator::ForwardEuler(_) | Integrator::CorrectedEuler => false,
         }
     }
 }

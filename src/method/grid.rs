@@ -1,6 +1,6 @@
 //! The background grid says where nodes stand, and which cell holds a point.
 
-use nalgebra::{SVector, Vector1};
+use nalgebra::SVector;
 
 /// Counts through all index tuples below `count`, the first axis fastest; by carrying, since a
 /// division per tuple would cost more than what is done with it.
@@ -22,12 +22,20 @@ pub fn odometer<const D: usize>(count: [usize; D]) -> impl Iterator<Item = [usiz
     })
 }
 
+/// A point so near above a node, in cells, is on it: N_Ip and m_I are then 0, and else not so
+/// small that f_I / m_I, σ/(ρh) over this at most, is no number.
+const LEAST: f64 = 1e-280;
+
 /// A grid is regular, of boxes with spacing h, in the frame of the body's lower corner: node i
 /// along an axis stands at (i − before) h.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid<const D: usize> {
     /// h, the spacing along each axis (m).
     pub h: SVector<f64, D>,
+    /// 1/h (1/m).
+    pub per_h: SVector<f64, D>,
+    /// The grid's lower corner (m).
+    lower: SVector<f64, D>,
     /// Cells along each axis, those beyond the body included.
     pub cells: [usize; D],
     /// Cells below the body's lower corner along each axis.
@@ -46,34 +54,26 @@ pub struct Located<const D: usize> {
     pub xi: SVector<f64, D>,
 }
 
-impl<const D: usize> Located<D> {
-    /// Sees the point along axis d only.
-    pub fn axis(&self, d: usize) -> Located<1> {
-        Located { cell: [self.cell[d]], xi: Vector1::new(self.xi[d]) }
-    }
-}
-
 impl<const D: usize> Grid<D> {
     /// Lays a grid of `cells` cells over a body of `length` (m) along each axis, and
     /// `beyond` cells more before and after it.
     pub fn over(length: [f64; D], cells: [usize; D], beyond: [[usize; 2]; D]) -> Self {
         let h = SVector::from_fn(|d, _| length[d] / cells[d] as f64);
-        Grid {
-            h,
-            cells: std::array::from_fn(|d| beyond[d][0] + cells[d] + beyond[d][1]),
-            before: std::array::from_fn(|d| beyond[d][0]),
-            upper: SVector::from_fn(|d, _| length[d] + beyond[d][1] as f64 * h[d]),
-        }
+        let upper = SVector::from_fn(|d, _| length[d] + beyond[d][1] as f64 * h[d]);
+        let all = std::array::from_fn(|d| beyond[d][0] + cells[d] + beyond[d][1]);
+        Grid::new(h, all, std::array::from_fn(|d| beyond[d][0]), upper)
     }
 
-    /// Gives the grid of axis d by itself.
-    pub fn axis(&self, d: usize) -> Grid<1> {
-        Grid {
-            h: Vector1::new(self.h[d]),
-            cells: [self.cells[d]],
-            before: [self.before[d]],
-            upper: Vector1::new(self.upper[d]),
-        }
+    /// Makes a grid from its spacing `h` (m), all its `cells`, those before the body's lower
+    /// corner, and its upper corner (m).
+    pub fn new(
+        h: SVector<f64, D>,
+        cells: [usize; D],
+        before: [usize; D],
+        upper: SVector<f64, D>,
+    ) -> Self {
+        let lower = SVector::from_fn(|d, _| 0.0 - before[d] as f64 * h[d]);
+        Grid { h, per_h: h.map(|h| 1.0 / h), lower, cells, before, upper }
     }
 
     /// Gives N_n, the number of nodes.
@@ -106,6 +106,11 @@ impl<const D: usize> Grid<D> {
         I
     }
 
+    /// Gives for each axis what the number I grows by from a node to the next.
+    pub fn stride(&self) -> [usize; D] {
+        std::array::from_fn(|d| self.cells[..d].iter().map(|cells| cells + 1).product())
+    }
+
     /// Lists the nodes whose distance from a point along each axis is at most `radius`
     /// cells, and the corners of its cell; the first axis runs fastest.
     pub fn around(&self, at: &Located<D>, radius: f64) -> impl Iterator<Item = [usize; D]> {
@@ -121,32 +126,38 @@ impl<const D: usize> Grid<D> {
 
     /// Gives the coordinate along axis d of the nodes with index i (m).
     fn coordinate(&self, d: usize, i: usize) -> f64 {
-        (i as f64 - self.before[d] as f64) * self.h[d]
+        (i as i64 - self.before[d] as i64) as f64 * self.h[d]
     }
 
     /// Finds the cell that holds `x` (m); `None` outside the grid or for NaN.
     ///
     /// A point on a face belongs to the cell above it, except on the grid's
     /// own upper face. ξ is measured from the node as a number, so that a point
-    /// with a node's coordinate has exactly ξ = 0.
+    /// with a node's coordinate has exactly ξ = 0; so has one that is above it by less than
+    /// 1e-280 h, for a function that is not 0 must not be too small to divide by.
+    #[inline]
     pub fn locate(&self, x: &SVector<f64, D>) -> Option<Located<D>> {
-        let mut cell = [0; D];
-        let mut xi = SVector::zeros();
+        let (mut cell, mut xi) = ([0; D], SVector::zeros());
         for d in 0..D {
-            if !(self.coordinate(d, 0) <= x[d] && x[d] <= self.upper[d]) {
+            let x = x[d];
+            if !(self.lower[d] <= x && x <= self.upper[d]) {
                 return None;
             }
             let last = self.cells[d] - 1;
             // Whole part of a number from 0 up. It may be rounded across a node.
-            let mut i = ((x[d] / self.h[d] + self.before[d] as f64) as usize).min(last);
-            if x[d] < self.coordinate(d, i) {
+            let mut i = (((x - self.lower[d]) * self.per_h[d]) as i64 as usize).min(last);
+            let mut from = x - self.coordinate(d, i);
+            if from < 0.0 {
                 i -= 1;
-            } else if i < last && x[d] >= self.coordinate(d, i + 1) {
-                i += 1;
+                from = x - self.coordinate(d, i);
             }
-            let within = (x[d] - self.coordinate(d, i)) / self.h[d];
-            let on_top = i == last && x[d] >= self.coordinate(d, i + 1);
-            (cell[d], xi[d]) = (i, if on_top { 1.0 } else { within.min(1.0) });
+            let above = self.coordinate(d, i + 1);
+            let mut within = from * self.per_h[d];
+            if x >= above {
+                (i, within) =
+                    if i < last { (i + 1, (x - above) * self.per_h[d]) } else { (i, 1.0) };
+            }
+            (cell[d], xi[d]) = (i, if within < LEAST { 0.0 } else { within.min(1.0) });
         }
         Some(Located { cell, xi })
     }

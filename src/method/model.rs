@@ -1,12 +1,12 @@
 //! The model stays the same from step to step, and the state changes.
 
 use super::basis::{Basis, Scratch};
-use super::choice::{Mass, Method};
+use super::choice::{Integrator, Mass, Method};
 use super::continuum::law::LinearElastic;
 use super::continuum::loads::Loads;
 use super::continuum::mass::{ConsistentMass, MassMatrix};
 use super::continuum::shape::Shape;
-use super::continuum::state::{Carriers, Nodes, Particles};
+use super::continuum::state::{Carriers, Multiplier, Nodes, Particles};
 use super::cost::Cost;
 use super::grid::Grid;
 use nalgebra::{SMatrix, SVector};
@@ -35,7 +35,7 @@ impl<const D: usize> Model<D> {
     /// Counts the bytes of state that one particle carries in this model.
     pub fn bytes_per_particle(&self) -> usize {
         let (vector, matrix) = (size_of::<SVector<f64, D>>(), size_of::<SMatrix<f64, D, D>>());
-        let of_basis = if self.basis.has_multiplier() { vector } else { 0 };
+        let of_basis = if self.basis.has_multiplier() { size_of::<Multiplier<D>>() } else { 0 };
         let of_method = match self.method {
             Method::Mpm(integrator) if integrator.carries_acceleration() => vector, // a_p
             Method::Mpm(_) => 0,
@@ -74,7 +74,9 @@ impl<const D: usize> State<D> {
         match model.method {
             Method::Mpm(integrator) if integrator.carries_acceleration() => {
                 particle.a = zeros(particles);
-                (node.a, node.a_next) = (zeros(nodes), zeros(nodes));
+                if let Integrator::GeneralizedAlpha { .. } = integrator {
+                    (node.a_last, node.a_next) = (zeros(nodes), zeros(nodes));
+                }
             }
             Method::Mpm(_) => {}
             Method::Otm => {
@@ -83,7 +85,7 @@ impl<const D: usize> State<D> {
             }
         }
         if model.basis.has_multiplier() {
-            particle.lambda = zeros(particles);
+            particle.lambda = vec![Multiplier::default(); particles];
         }
         let mass = match model.mass {
             Mass::Lumped => MassMatrix::Lumped,
@@ -91,8 +93,14 @@ impl<const D: usize> State<D> {
                 MassMatrix::Consistent(Box::new(ConsistentMass::blank(nodes, &model.fixed)))
             }
         };
-        let shape = Shape::blank(particles);
-        State { particle, node, shape, mass, scratch: Scratch::default(), steps: 0 }
+        State {
+            particle,
+            node,
+            shape: Shape::blank(particles),
+            mass,
+            scratch: Scratch::default(),
+            steps: 0,
+        }
     }
 
     /// Gives what carries the body's mass and motion: the particles of MPM, the nodes of OTM.

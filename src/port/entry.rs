@@ -120,13 +120,14 @@ impl TraceRecorder {
             "N_Ip" => self.shapes(shape),
             "grad_N_Ip" => self.gradients(shape),
             "lambda" if model.basis.has_multiplier() => {
-                self.multipliers(&particle.lambda, &model.grid.h);
+                let lambda = particle.lambda.iter().map(|known| known.lambda);
+                self.multipliers(lambda, &model.grid.h);
             }
             "lambda" => {}
             "m_I" => self.numbers(symbol, &node.m),
             "p_I" | "p_I_advanced" => self.vectors(symbol, &node.p),
             "v_I" => self.vectors(symbol, &node.v),
-            "a_I" => self.vectors(symbol, &node.a),
+            "a_I" => self.vectors(symbol, &node.a_last),
             "a_I_next" => self.vectors("a_I", &node.a_next),
             "x_I" => self.vectors(symbol, &node.x),
             "f_I" => self.vectors(symbol, &node.f),
@@ -214,8 +215,12 @@ impl TraceRecorder {
     }
 
     /// Writes λ_p (1/m) from `lambda` = λ_p h.
-    pub fn multipliers<const D: usize>(&mut self, lambda: &[SVector<f64, D>], h: &SVector<f64, D>) {
-        let lambda: Vec<SVector<f64, D>> = lambda.iter().map(|l| l.component_div(h)).collect();
+    pub fn multipliers<const D: usize>(
+        &mut self,
+        lambda: impl Iterator<Item = SVector<f64, D>>,
+        h: &SVector<f64, D>,
+    ) {
+        let lambda: Vec<_> = lambda.map(|lambda| lambda.component_div(h)).collect();
         self.vectors("lambda", &lambda);
     }
 }

@@ -184,11 +184,11 @@ struct Regular<const D: usize> {
 
 impl<const D: usize> Regular<D> {
     fn values(&self, basis: &Basis, x: &SVector<f64, D>) -> Result<NodeValues<D>, Breakdown> {
-        let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
+        let (mut shape, mut scratch) = (Shape::default(), Scratch::default());
         let x = [x - self.lowest];
         // Of these bases none has a λ.
         basis::fill_from_grid(&mut shape, &mut scratch, &mut [], basis, &self.grid, &x)?;
-        Ok(shape.of(0).map(|(I, N, grad)| (self.file_node[I], N, *grad)).collect())
+        Ok(shape.of(0).map(|(I, N, grad)| (self.file_node[I], N, grad)).collect())
     }
 }
 
@@ -208,7 +208,7 @@ fn regular_grid<const D: usize>(
         let problem = format!("{} nodes do not fill a box", place.len());
         return Err(nodes.fault(0, problem, allowed()));
     }
-    let grid = Grid { h: SVector::repeat(spacing), cells, before: [0; D], upper: extent };
+    let grid = Grid::new(SVector::repeat(spacing), cells, [0; D], extent);
     let mut file_node = vec![usize::MAX; place.len()];
     for (n, x) in place.iter().enumerate() {
         let s = (x - lowest) / spacing;

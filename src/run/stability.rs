@@ -32,9 +32,9 @@ const MOST_ITERATIONS: usize = 300;
 /// is also taken with all particles moved by this share of a cell.
 const TOUCH: f64 = 1e-7;
 
-/// A factor is g, what a scheme makes of an eigenvalue s of A.
+/// This is g, what a scheme makes of an eigenvalue s of A.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Factor {
+enum OfScheme {
     One,
     /// s.
     Filtered,
@@ -47,29 +47,29 @@ enum Factor {
 }
 
 // ANCHOR: factor
-impl Factor {
+impl OfScheme {
     fn of<const D: usize>(model: &Model<D>) -> Self {
         let Method::Mpm(integrator) = model.method else {
-            return Factor::One;
+            return OfScheme::One;
         };
         match integrator {
-            Integrator::Newmark(_) | Integrator::CorrectedEuler => Factor::Filtered,
-            Integrator::ForwardEuler(StressUpdate::Last) => Factor::Last,
-            Integrator::ForwardEuler(_) => Factor::Filtered,
+            Integrator::Newmark(_) | Integrator::CorrectedEuler => OfScheme::Filtered,
+            Integrator::ForwardEuler(StressUpdate::Last) => OfScheme::Last,
+            Integrator::ForwardEuler(_) => OfScheme::Filtered,
             // l and p have the factor 1 − s: 2 for every s < 1, but 1 for s = 1. With
             // the consistent mass matrix both occur, and 2 is on the safe side.
-            Integrator::GeneralizedAlpha { rho_b: 1.0 } => Factor::Constant(2.0),
-            Integrator::GeneralizedAlpha { rho_b } => Factor::Alpha(Parameters::new(rho_b)),
+            Integrator::GeneralizedAlpha { rho_b: 1.0 } => OfScheme::Constant(2.0),
+            Integrator::GeneralizedAlpha { rho_b } => OfScheme::Alpha(Parameters::new(rho_b)),
         }
     }
 
     fn at(&self, s: f64) -> f64 {
         match self {
-            Factor::One => 1.0,
-            Factor::Filtered => s,
-            Factor::Last => 2.0 - s,
-            Factor::Constant(value) => *value,
-            Factor::Alpha(Parameters { alpha_m, beta, gamma }) => {
+            OfScheme::One => 1.0,
+            OfScheme::Filtered => s,
+            OfScheme::Last => 2.0 - s,
+            OfScheme::Constant(value) => *value,
+            OfScheme::Alpha(Parameters { alpha_m, beta, gamma }) => {
                 let l = 1.0 - alpha_m - alpha_m * s;
                 let p = (1.0 + s) * (beta - 0.5 * gamma * s) - 0.5 * s * (1.0 - s);
                 2.0 * p / l
@@ -81,9 +81,9 @@ impl Factor {
     /// eight for generalized-α, which leaves less than 1e-4.
     fn chebyshev(&self) -> Vec<f64> {
         let n = match self {
-            Factor::One | Factor::Constant(_) => 1,
-            Factor::Filtered | Factor::Last => 2,
-            Factor::Alpha(_) => 8,
+            OfScheme::One | OfScheme::Constant(_) => 1,
+            OfScheme::Filtered | OfScheme::Last => 2,
+            OfScheme::Alpha(_) => 8,
         };
         let angle = |j: usize| (j as f64 + 0.5) * std::f64::consts::PI / n as f64;
         (0..n)
@@ -149,9 +149,6 @@ impl<const D: usize> Operator<'_, D> {
         let State { node, mass, .. } = &mut *self.state;
         let unsolved = q.clone();
         mass.solve(q, &unsolved, &node.m);
-        for I in 0..q.len() {
-            q[I] = if node.m[I] > 0.0 { q[I] / node.m[I] } else { SVector::zeros() };
-        }
     }
 
     /// Applies A to u: to the particles and back.
@@ -235,7 +232,7 @@ pub fn noise() -> impl FnMut() -> f64 {
 /// Round-off makes copies of the eigenvalues, but adds none above the largest, so
 /// three vectors are enough.
 pub fn limit<const D: usize>(state: &mut State<D>, model: &Model<D>) -> f64 {
-    let chebyshev = Factor::of(model).chebyshev();
+    let chebyshev = OfScheme::of(model).chebyshev();
     let count = state.particle.len();
     let mut operator = Operator { state, model, chebyshev };
     let dot = |a: &Stress<D>, b: &Stress<D>| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum::<f64>();

@@ -39,7 +39,7 @@ pub const NEWMARK: Scheme = Scheme {
     leapfrog: true,
     force: StepForce::MeanOfBothEnds,
     order: Each { v: Some(2.0), sigma: Some(2.0), u: None },
-    carries_acceleration: false,
+    carries_acceleration: true,
 };
 
 /// Step 8 adds f Δt, and so the displacement counts half of it twice.
@@ -56,6 +56,7 @@ pub const STRESS_FIRST: Scheme = Scheme {
     sets: &["time.integrator=forward-euler", "time.stress_update=first"],
     force: StepForce::AtItsStart,
     order: Each { v: Some(1.0), sigma: Some(2.0), u: Some(1.0) },
+    carries_acceleration: false,
     ..NEWMARK
 };
 

@@ -15,6 +15,7 @@ use lme_mpm::method::basis::scattered::{Places, fill_from_nodes};
 use lme_mpm::method::basis::{Basis, Scratch, fill_from_grid};
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::method::continuum::shape::Shape;
+use lme_mpm::method::continuum::state::Multiplier;
 use lme_mpm::method::cost::Cost;
 use lme_mpm::method::grid::Grid;
 use lme_mpm::method::measure::{Order, observed_order};
@@ -159,17 +160,18 @@ pub struct Tabulated<const D: usize> {
 impl<const D: usize> Tabulated<D> {
     /// What the first point sees: node, N, ∇N.
     pub fn row(&self) -> Vec<(usize, f64, SVector<f64, D>)> {
-        self.shape.of(0).map(|(I, N, grad)| (I, N, *grad)).collect()
+        self.shape.of(0).collect()
     }
 }
 
 fn tabulated<const D: usize>(
     points: usize,
-    fill: impl FnOnce(&mut Shape<D>, &mut Scratch<D>, &mut [SVector<f64, D>]) -> Result<(), Breakdown>,
+    fill: impl FnOnce(&mut Shape<D>, &mut Scratch<D>, &mut [Multiplier<D>]) -> Result<(), Breakdown>,
 ) -> (Tabulated<D>, Result<(), Breakdown>) {
     let (mut shape, mut scratch) = (Shape::blank(0), Scratch::default());
-    let mut lambda = vec![SVector::zeros(); points];
-    let done = fill(&mut shape, &mut scratch, &mut lambda);
+    let mut known = vec![Multiplier::default(); points];
+    let done = fill(&mut shape, &mut scratch, &mut known);
+    let lambda = known.iter().map(|known| known.lambda).collect();
     let cost = shape.cost + scratch.cost();
     (Tabulated { shape, lambda, cost }, done)
 }

@@ -1,7 +1,8 @@
 //! Quadratic B-splines are centred at the nodes and corrected at the ends of the grid (the
 //! extension that the paper names, its reference 18), D = 1, 2, 3.
 
-use super::tensor::Line;
+use super::tensor::Axis;
+use crate::method::continuum::shape::Factor;
 
 // ANCHOR: bspline
 /// Gives N and dN/dξ of the quadratic B-spline with knots at ±½ and ±3/2, ξ = (x − x_I)/h.
@@ -17,23 +18,27 @@ pub fn quadratic(xi: f64) -> (f64, f64) {
     }
 }
 
-/// Makes the line of one axis with `cells` cells: the nearest node and its neighbours.
+/// Makes the functions of one axis with `cells` cells: the nearest node and its neighbours.
 ///
 /// Within half a cell of an end of the grid one neighbour is missing. Its part
 /// is carried by linear extrapolation, 2 to the end node and −1 to the next,
 /// which keeps ΣN = 1 and ΣN x = x. What is left there is 1 − ξ and ξ: the end
 /// node interpolates, so that a fixed end is fixed by its own node.
-pub fn line(cell: usize, cells: usize, xi: f64, h: f64) -> Line {
-    let mut line = Line::default();
+pub fn axis(cell: usize, cells: usize, xi: f64, h: f64) -> Axis {
     let nearest = if xi < 0.5 { cell } else { cell + 1 };
     if nearest == 0 || nearest == cells {
-        return super::linear::line(cell, xi, h);
+        let mut axis = Axis::from(cell);
+        for Factor { N, slope } in super::linear::factors(xi, 1.0 / h) {
+            axis.push(N, slope);
+        }
+        return axis;
     }
     let from_nearest = xi - (nearest - cell) as f64;
-    for (node, offset) in [(nearest - 1, -1.0), (nearest, 0.0), (nearest + 1, 1.0)] {
+    let mut axis = Axis::from(nearest - 1);
+    for offset in [-1.0, 0.0, 1.0] {
         let (N, slope) = quadratic(from_nearest - offset);
-        line.push(node, N, slope / h);
+        axis.push(N, slope / h);
     }
-    line
+    axis
 }
 // ANCHOR_END: bspline

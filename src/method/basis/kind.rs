@@ -39,9 +39,7 @@ impl Basis {
     /// Gives the width of local max-ent; the functions of the other bases have none to choose.
     pub fn width(&self) -> Option<Width> {
         match self {
-            Basis::Lme { gamma, cutoff, .. } => {
-                Some(Width { gamma: *gamma, reach: radius(*gamma, *cutoff) })
-            }
+            Basis::Lme { gamma, cutoff, .. } => Some(Width::of(*gamma, *cutoff)),
             Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline => None,
         }
     }

@@ -16,10 +16,11 @@ pub use scratch::Scratch;
 
 use super::breakdown::Breakdown;
 use super::continuum::shape::Shape;
-use super::grid::{Grid, Located};
+use super::continuum::state::Multiplier;
+use super::grid::Grid;
 use nalgebra::SVector;
-use support::{row_in_box, row_on_grid};
-use tensor::{Line, product_row};
+use std::array::from_fn;
+use support::{Width, row_in_ball, row_in_box};
 
 // ANCHOR: tabulate
 /// Fills the table with N_Ip (–) and ∇N_Ip (1/m) at the positions `x` (m). With local
@@ -31,36 +32,71 @@ use tensor::{Line, product_row};
 pub fn fill_from_grid<const D: usize>(
     shape: &mut Shape<D>,
     scratch: &mut Scratch<D>,
-    lambda: &mut [SVector<f64, D>],
+    lambda: &mut [Multiplier<D>],
     basis: &Basis,
     grid: &Grid<D>,
     x: &[SVector<f64, D>],
 ) -> Result<(), Breakdown> {
-    shape.clear();
-    let width = basis.width();
+    shape.clear(grid.stride());
+    let making = Making::of::<D>(basis);
     for (p, x_p) in x.iter().enumerate() {
-        let at = grid.locate(x_p).ok_or_else(|| outside(p, x_p))?;
-        match (basis, width) {
-            (Basis::Lme { support, .. }, Some(width)) => match support {
-                Support::Box => row_in_box(shape, scratch, &mut lambda[p], width, grid, &at),
-                Support::Ball => {
-                    row_on_grid(shape, &mut scratch.lme, &mut lambda[p], width, grid, &at)
-                }
+        let Some(at) = grid.locate(x_p) else {
+            return Err(outside(p, x_p));
+        };
+        let no_basis = |failure| Breakdown::NoBasis { particle: p, failure };
+        match making {
+            Making::Linear => {
+                let axes: [_; D] = from_fn(|d| linear::factors(at.xi[d], grid.per_h[d]));
+                shape.push_product(from_fn(|d| (at.cell[d], &axes[d][..])));
             }
-            .map_err(|failure| Breakdown::NoBasis { particle: p, failure })?,
-            _ => {
-                let lines = lines(basis, grid, &at).ok_or_else(|| Breakdown::ReachesBeyond {
-                    particle: p,
-                    position: x_p.iter().copied().collect(),
+            Making::BSpline => {
+                let axes: [_; D] =
+                    from_fn(|d| bspline::axis(at.cell[d], grid.cells[d], at.xi[d], grid.h[d]));
+                shape.push_product(from_fn(|d| axes[d].factors()));
+            }
+            Making::Ugimp(half_length) => {
+                let axes = ugimp::axes(&at, grid, half_length).ok_or_else(|| {
+                    let position = x_p.iter().copied().collect();
+                    Breakdown::ReachesBeyond { particle: p, position }
                 })?;
-                let count = std::array::from_fn(|d| lines[d].len());
-                product_row(shape, grid, count, |d, n| lines[d].entry(n));
+                shape.push_product(from_fn(|d| axes[d].factors()));
+            }
+            Making::Box(width) => {
+                let known = &mut lambda[p];
+                row_in_box(shape, scratch, known, width, grid, (&at, x_p)).map_err(no_basis)?;
+            }
+            Making::Ball(width) => {
+                let (lme, last) = (&mut scratch.lme, &mut lambda[p].lambda);
+                row_in_ball(shape, lme, last, width, grid, &at).map_err(no_basis)?;
             }
         }
-        shape.end_row();
     }
-    shape.count();
     Ok(())
+}
+
+/// This says how a row is made; what is the same for all particles is taken once.
+#[derive(Clone, Copy)]
+enum Making {
+    Linear,
+    Ugimp([f64; 3]),
+    BSpline,
+    Box(Width),
+    Ball(Width),
+}
+
+impl Making {
+    /// Along one axis a ball is a box.
+    fn of<const D: usize>(basis: &Basis) -> Self {
+        match *basis {
+            Basis::Linear => Making::Linear,
+            Basis::Ugimp { half_length } => Making::Ugimp(half_length),
+            Basis::BSpline => Making::BSpline,
+            Basis::Lme { gamma, cutoff, support } => match support {
+                Support::Ball if D > 1 => Making::Ball(Width::of(gamma, cutoff)),
+                Support::Ball | Support::Box => Making::Box(Width::of(gamma, cutoff)),
+            },
+        }
+    }
 }
 // ANCHOR_END: tabulate
 
@@ -71,19 +107,4 @@ fn outside<const D: usize>(p: usize, x_p: &SVector<f64, D>) -> Breakdown {
         true => Breakdown::LeftGrid { particle: p, position: x_p.iter().copied().collect() },
         false => Breakdown::NotFinite { particle: p, symbol: "position" },
     }
-}
-
-/// Makes the functions of one coordinate of a tensor-product basis along each axis; `None`
-/// where the particle reaches beyond the grid.
-fn lines<const D: usize>(basis: &Basis, grid: &Grid<D>, at: &Located<D>) -> Option<[Line; D]> {
-    let mut lines = [Line::default(); D];
-    for d in 0..D {
-        let (cell, cells, xi, h) = (at.cell[d], grid.cells[d], at.xi[d], grid.h[d]);
-        lines[d] = match basis {
-            Basis::Ugimp { half_length } => ugimp::line(cell, cells, xi, half_length[d], h)?,
-            Basis::BSpline => bspline::line(cell, cells, xi, h),
-            Basis::Linear | Basis::Lme { .. } => linear::line(cell, xi, h),
-        };
-    }
-    Some(lines)
 }

@@ -7,6 +7,7 @@ use super::scratch::Scratch;
 use super::support::{Width, radius};
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
+use crate::method::continuum::state::Multiplier;
 use nalgebra::SVector;
 
 /// The search radius of a particle that its nodes do not enclose is widened as often, each time
@@ -36,12 +37,12 @@ pub struct Places<'a, const D: usize> {
 pub fn fill_from_nodes<const D: usize>(
     shape: &mut Shape<D>,
     scratch: &mut Scratch<D>,
-    lambda: &mut [SVector<f64, D>],
+    lambda: &mut [Multiplier<D>],
     basis: &Basis,
     nodes: Places<D>,
     x: &[SVector<f64, D>],
 ) -> Result<(), Breakdown> {
-    shape.clear();
+    shape.clear([0; D]);
     // At least the nodes of a cell, however narrow the functions.
     let width = basis.width().map(|width| Width { reach: width.reach.max(1.0), ..width });
     if let Some(Width { reach, .. }) = width {
@@ -49,16 +50,17 @@ pub fn fill_from_nodes<const D: usize>(
     }
     for p in 0..x.len() {
         let row = match width {
-            Some(width) => row_among_nodes(shape, scratch, &mut lambda[p], width, nodes, &x[p]),
+            Some(width) => {
+                row_among_nodes(shape, scratch, &mut lambda[p].lambda, width, nodes, &x[p])
+            }
             None => linear_row(shape, nodes.x, &x[p]),
         };
         row.map_err(|failure| match x[p].iter().all(|x| x.is_finite()) {
             true => Breakdown::NoBasis { particle: p, failure },
             false => Breakdown::NotFinite { particle: p, symbol: "position" },
         })?;
-        shape.end_row();
+        shape.end_list();
     }
-    shape.count();
     Ok(())
 }
 
@@ -130,13 +132,13 @@ pub fn values_at<const D: usize>(
     if nodes.iter().chain([x]).any(|place| place.iter().any(|x| !x.is_finite())) {
         return Err(Failure::NotFinite);
     }
-    let (mut lme, mut shape) = (Lme::default(), Shape::blank(0));
+    let (mut lme, mut shape) = (Lme::default(), Shape::default());
     let h = &SVector::repeat(spacing);
     let places = Places { x: nodes, h };
     see(&mut lme, places, x, radius(gamma, cutoff), 0..nodes.len());
     let lambda = max_ent_row(&mut shape, &mut lme, gamma, h, [SVector::zeros()])?;
-    shape.end_row();
-    Ok((shape.of(0).map(|(I, N, grad)| (I, N, *grad)).collect(), lambda / spacing))
+    shape.end_list();
+    Ok((shape.of(0).collect(), lambda / spacing))
 }
 
 /// Writes the row of the two nodes beside x_p, in 1D, where nodes stand in the order of

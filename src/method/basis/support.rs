@@ -1,9 +1,9 @@
 //! Says which nodes of a grid local max-ent sees.
 
-use super::lme::{Failure, Lme, max_ent_row};
+use super::lme::{AxisFunctions, AxisPoint, Failure, Lme, max_ent_row, solve_axis};
 use super::scratch::Scratch;
-use super::tensor::product_row;
-use crate::method::continuum::shape::Shape;
+use crate::method::continuum::shape::{Factor, Shape};
+use crate::method::continuum::state::Multiplier;
 use crate::method::grid::{Grid, Located};
 use nalgebra::{SVector, Vector1};
 
@@ -24,13 +24,20 @@ pub struct Width {
     pub reach: f64,
 }
 
-// ANCHOR: lme_grid
-/// Writes one row of local max-ent on a grid: all nodes within R, and always the corners of
+impl Width {
+    /// Takes γ and the cut-off.
+    pub fn of(gamma: f64, cutoff: f64) -> Self {
+        Width { gamma, reach: radius(gamma, cutoff) }
+    }
+}
+
+// ANCHOR: lme_ball
+/// Writes one row of local max-ent cut off by a ball: all nodes within R, and always the corners of
 /// the cell, so that x_p is in the hull of its nodes. Lengths are measured in cells along
 /// each axis. `lambda` starts the search for λ h, and holds what was found.
 ///
 /// Errors: [`Failure`].
-pub fn row_on_grid<const D: usize>(
+pub fn row_in_ball<const D: usize>(
     shape: &mut Shape<D>,
     lme: &mut Lme<D>,
     lambda: &mut SVector<f64, D>,
@@ -48,43 +55,90 @@ pub fn row_on_grid<const D: usize>(
             lme.push(grid.node(node), xi, offset);
         }
     }
-    // The last λ, which is 0 before the first search, then 0, then the two nodes.
-    let zero = SVector::zeros();
-    let last = Some(*lambda).filter(|last| *last != zero);
-    let starts = last.into_iter().chain([zero]);
-    let starts = starts.chain(std::iter::once_with(|| of_two_nodes(gamma, &at.xi)));
-    *lambda = max_ent_row(shape, lme, gamma, &grid.h, starts)?;
+    *lambda = max_ent_row(shape, lme, gamma, &grid.h, starts(gamma, *lambda, at.xi))?;
+    shape.end_list();
     Ok(())
 }
-// ANCHOR_END: lme_grid
+// ANCHOR_END: lme_ball
 
 // ANCHOR: lme_box
 /// Writes one row of local max-ent cut off by a box: the functions of each axis by
-/// themselves, and their product. `lambda` starts the search for λ h along each axis, and
-/// holds what was found.
+/// themselves, of which it is the product. `known` starts the search for λ h along each axis,
+/// and holds what was found; `x` (m) is the point.
+///
+/// With λ(x) goes ∂λ/∂x = (2γ − 1/J)/h² along an axis: r(λ, x) stays 0.
 ///
 /// Errors: [`Failure`].
 pub fn row_in_box<const D: usize>(
     shape: &mut Shape<D>,
-    scratch: &mut Scratch<D>,
-    lambda: &mut SVector<f64, D>,
-    width: Width,
+    Scratch { axes, axis_lme, axis_row, .. }: &mut Scratch<D>,
+    known: &mut Multiplier<D>,
+    Width { gamma, reach }: Width,
     grid: &Grid<D>,
-    at: &Located<D>,
+    (at, x): (&Located<D>, &SVector<f64, D>),
 ) -> Result<(), Failure> {
-    let Scratch { axis_lme, axes, .. } = scratch;
-    axes.clear();
+    let mut first = [0; D];
     for d in 0..D {
-        let mut lambda_d = Vector1::new(lambda[d]);
-        row_on_grid(axes, axis_lme, &mut lambda_d, width, &grid.axis(d), &at.axis(d))?;
-        axes.end_row();
-        lambda[d] = lambda_d[0];
+        let (cell, xi, h, axis) = (at.cell[d], at.xi[d], grid.h[d], &mut axes[d]);
+        // The nodes within R on either side, and always both of the cell.
+        let below = ((reach - xi) as usize).min(cell) + 1;
+        let above = ((reach - (1.0 - xi)) as usize).min(grid.cells[d] - 1 - cell) + 1;
+        let point = AxisPoint { xi, below, above };
+        let start = known.lambda[d] + known.rate[d] * ((x[d] - known.x[d]) * grid.per_h[d]);
+        let (lambda, J) = match solve_axis(axis, gamma, point, start, h) {
+            Some(found) => found,
+            None => search_axis(axis, axis_lme, axis_row, gamma, point, (known.lambda[d], h))?,
+        };
+        first[d] = cell + 1 - below;
+        (known.lambda[d], known.rate[d], known.x[d]) = (lambda, 2.0 * gamma - 1.0 / J, x[d]);
     }
-    let count = std::array::from_fn(|d| axes.of(d).count());
-    product_row(shape, grid, count, |d, n| axes.pair(d, n));
+    shape.push_product(std::array::from_fn(|d| (first[d], &axes[d].factor[..])));
     Ok(())
 }
+
+/// Finds the functions of one axis by the general search; returns λ h and J.
+#[cold]
+fn search_axis(
+    axis: &mut AxisFunctions,
+    lme: &mut Lme<1>,
+    row: &mut Shape<1>,
+    gamma: f64,
+    AxisPoint { xi, below, above }: AxisPoint,
+    (last, h): (f64, f64),
+) -> Result<(f64, f64), Failure> {
+    lme.clear(true);
+    for n in 0..below + above {
+        let offset = below as f64 - 1.0 - n as f64;
+        lme.push(n, Vector1::new(xi + offset), Vector1::new(offset));
+    }
+    row.clear([0]);
+    let xi = Vector1::new(xi);
+    let starts = starts(gamma, Vector1::new(last), xi);
+    let lambda = max_ent_row(row, lme, gamma, &Vector1::new(h), starts)?;
+    row.end_list();
+    let mut J = 0.0;
+    axis.factor.clear();
+    for (n, N, slope) in row.of(0) {
+        let xi_n = xi[0] + (below as f64 - 1.0 - n as f64);
+        J += N * xi_n * xi_n;
+        axis.factor.push(Factor { N, slope: slope[0] });
+    }
+    Ok((lambda[0], J))
+}
 // ANCHOR_END: lme_box
+
+/// Lists where the search for λ h starts: the last λ, which is 0 before the first search, then
+/// 0, then the two nodes.
+fn starts<const D: usize>(
+    gamma: f64,
+    last: SVector<f64, D>,
+    xi: SVector<f64, D>,
+) -> impl Iterator<Item = SVector<f64, D>> {
+    let zero = SVector::zeros();
+    let last = Some(last).filter(|last| *last != zero);
+    let two_nodes = std::iter::once_with(move || of_two_nodes(gamma, &xi));
+    last.into_iter().chain([zero]).chain(two_nodes)
+}
 
 /// Gives the λ h that the two nodes of the cell along each axis alone would have: with it their
 /// weights are 1 − s and s.

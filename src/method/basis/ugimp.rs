@@ -1,7 +1,8 @@
 //! uGIMP averages linear shape functions over a particle of fixed size (Bardenhagen & Kober
 //! 2004), D = 1, 2, 3.
 
-use super::tensor::Line;
+use super::tensor::Axis;
+use crate::method::grid::{Grid, Located};
 
 // ANCHOR: ugimp
 /// Gives N and dN/dξ of the hat 1 − |ξ| averaged over [ξ − l, ξ + l], with ξ = (x − x_I)/h and
@@ -23,18 +24,31 @@ pub fn averaged_hat(xi: f64, l: f64) -> (f64, f64) {
     }
 }
 
-/// Makes the line of one axis with `cells` cells: the two or three nodes whose averaged hat is
-/// not zero. `None` when the particle reaches beyond the grid, where a node is missing and ΣN
-/// would fall below 1.
-pub fn line(cell: usize, cells: usize, xi: f64, l: f64, h: f64) -> Option<Line> {
-    let mut line = Line::default();
+/// Makes the functions of each axis; `None` when the particle reaches beyond the grid, where
+/// a node is missing and ΣN would fall below 1.
+pub fn axes<const D: usize>(
+    at: &Located<D>,
+    grid: &Grid<D>,
+    half_length: [f64; 3],
+) -> Option<[Axis; D]> {
+    let mut axes = [Axis::default(); D];
+    for d in 0..D {
+        axes[d] = axis(at.cell[d], grid.cells[d], at.xi[d], half_length[d], grid.h[d])?;
+    }
+    Some(axes)
+}
+
+/// Makes the functions of one axis with `cells` cells: the two or three nodes whose averaged
+/// hat is not zero, if the grid has them.
+fn axis(cell: usize, cells: usize, xi: f64, l: f64, h: f64) -> Option<Axis> {
+    let mut axis = None;
     for offset in -1..=2 {
         let (N, slope) = averaged_hat(xi - offset as f64, l);
         if N > 0.0 {
             let node = cell.checked_add_signed(offset).filter(|node| *node <= cells)?;
-            line.push(node, N, slope / h);
+            axis.get_or_insert(Axis::from(node)).push(N, slope / h);
         }
     }
-    Some(line)
+    axis
 }
 // ANCHOR_END: ugimp

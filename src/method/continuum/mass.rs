@@ -45,11 +45,16 @@ impl<const D: usize> MassMatrix<D> {
         }
     }
 
-    /// Solves with the matrix: `out`_I = m_I Σ_J (m⁻¹)_IJ q_J, which is q_I itself with the
-    /// lumped one.
+    /// Solves (12), `out`_I = Σ_J (m⁻¹)_IJ q_J, for a nodal momentum or force `q`: the
+    /// nodal velocity (m/s) or acceleration (m/s²). It is q_I / m_I with the lumped matrix.
+    /// A node without mass has neither: 0.
     pub fn solve(&mut self, out: &mut [SVector<f64, D>], q: &[SVector<f64, D>], m: &[f64]) {
         match self {
-            MassMatrix::Lumped => out.copy_from_slice(q),
+            MassMatrix::Lumped => {
+                for I in 0..m.len() {
+                    out[I] = if m[I] > 0.0 { q[I] / m[I] } else { SVector::zeros() };
+                }
+            }
             MassMatrix::Consistent(mass) => mass.solve(out, q, m),
         }
     }
@@ -232,12 +237,9 @@ impl<const D: usize> ConsistentMass<D> {
     }
 
     // ANCHOR: solve
-    /// Solves (12): `out`_I = m_I Σ_J (m⁻¹)_IJ q_J for a nodal momentum or force `q` that is
-    /// zero where the boundary is fixed; `m` is m_I (kg).
-    ///
-    /// Afterwards `out`_I / m_I is the nodal velocity or acceleration that solves (12), so
-    /// that all that follows is written once for both mass matrices. Since Σ_J m_IJ = m_I,
-    /// the sums Σ_I `out`_I and Σ_I q_I of a free body are the same.
+    /// Solves (12): `out`_I = Σ_J (m⁻¹)_IJ q_J for a nodal momentum or force `q` that is zero
+    /// where the boundary is fixed. Since Σ_J m_IJ = m_I, the sums Σ_I m_I `out`_I and Σ_I q_I
+    /// of a free body are the same.
     fn solve(&mut self, out: &mut [SVector<f64, D>], q: &[SVector<f64, D>], m: &[f64]) {
         for i in 0..D {
             for I in 0..m.len() {
@@ -247,7 +249,7 @@ impl<const D: usize> ConsistentMass<D> {
                 factor.solve_mut(&mut self.column);
             }
             for I in 0..m.len() {
-                out[I][i] = m[I] * self.column[I];
+                out[I][i] = if m[I] > 0.0 { self.column[I] } else { 0.0 };
             }
         }
         self.cost.solves += D as u64;

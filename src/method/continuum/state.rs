@@ -24,10 +24,9 @@ pub struct Particles<const D: usize> {
     pub sigma: Vec<SMatrix<f64, D, D>>,
     /// Δε_p, strain increment of the step (–).
     pub d_eps: Vec<SMatrix<f64, D, D>>,
-    /// λ_p h, the multiplier of the last table (–), from where the next search starts;
-    /// of local max-ent only.
-    pub lambda: Vec<SVector<f64, D>>,
-    /// a_p, acceleration (m/s²); of generalized-α only.
+    /// λ_p of the last table; of local max-ent only.
+    pub lambda: Vec<Multiplier<D>>,
+    /// a_p, acceleration (m/s²); of Newmark's method and generalized-α only.
     pub a: Vec<SVector<f64, D>>,
     /// F_p, deformation gradient (–); of OTM only.
     pub F: Vec<SMatrix<f64, D, D>>,
@@ -47,12 +46,10 @@ pub struct Nodes<const D: usize> {
     pub v: Vec<SVector<f64, D>>,
     /// f_I, force (N).
     pub f: Vec<SVector<f64, D>>,
-    /// m_I v_I (kg m/s), where v_I solves (12): p_I itself with the lumped mass matrix.
-    pub mv: Vec<SVector<f64, D>>,
-    /// m_I a_I (N), where a_I solves (12): f_I itself with the lumped mass matrix.
-    pub ma: Vec<SVector<f64, D>>,
-    /// a_I of k (m/s²); of generalized-α only.
+    /// a_I, acceleration (m/s²): f_I / m_I, or what solves (12) with the consistent mass matrix.
     pub a: Vec<SVector<f64, D>>,
+    /// a_I of k, brought by the particles (m/s²); of generalized-α only.
+    pub a_last: Vec<SVector<f64, D>>,
     /// a_I of k+1 (m/s²); of generalized-α only.
     pub a_next: Vec<SVector<f64, D>>,
     /// x_I, position (m); of OTM only, whose nodes move.
@@ -61,6 +58,24 @@ pub struct Nodes<const D: usize> {
     pub cost: Cost,
 }
 // ANCHOR_END: nodes
+
+/// A multiplier is what a particle remembers of its λ, so that the next search starts near.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Multiplier<const D: usize> {
+    /// λ h of the last table (–).
+    pub lambda: SVector<f64, D>,
+    /// h ∂(λ_d h)/∂x_d along each axis (–): 2γ − 1/J_d. Of products only.
+    pub rate: SVector<f64, D>,
+    /// x_p of the last table (m). Of products only.
+    pub x: SVector<f64, D>,
+}
+
+impl<const D: usize> Default for Multiplier<D> {
+    fn default() -> Self {
+        let [lambda, rate, x] = [SVector::zeros(); 3];
+        Multiplier { lambda, rate, x }
+    }
+}
 
 /// Carriers hold the body's mass and motion: masses, places and velocities.
 pub struct Carriers<'a, const D: usize> {
@@ -112,9 +127,8 @@ impl<const D: usize> Nodes<D> {
             p: vec![SVector::zeros(); n],
             v: vec![SVector::zeros(); n],
             f: vec![SVector::zeros(); n],
-            mv: vec![SVector::zeros(); n],
-            ma: vec![SVector::zeros(); n],
-            a: Vec::new(),
+            a: vec![SVector::zeros(); n],
+            a_last: Vec::new(),
             a_next: Vec::new(),
             x: Vec::new(),
             cost: Cost::default(),

@@ -39,7 +39,10 @@ pub fn forward_step<const D: usize>(
                 update_material(particle, node, shape, model, dt)?;
             }
         }
-        4 => balance_forces(node, mass, particle, shape, model, t),
+        4 => {
+            balance_forces(node, particle, shape, model, t);
+            accelerate(node, mass);
+        }
         5 => advance_momentum(node, dt),
         6 => move_with_nodes(particle, node, shape, dt), // (20) (21)
         _ => {
@@ -73,9 +76,12 @@ pub fn corrected_step<const D: usize>(
         }
         2 => transfer(node, mass, particle, shape)?,
         3 => impose_essential(node, mass, &model.fixed),
-        4 => balance_forces(node, mass, particle, shape, model, t),
+        4 => {
+            balance_forces(node, particle, shape, model, t);
+            accelerate(node, mass);
+        }
         5 => advance_momentum(node, dt),
-        6 => move_with_shares(particle, node, shape, dt), // (22) (23)
+        6 => move_with_nodes(particle, node, shape, dt), // (22) (23)
         _ => {
             map_momentum_anew(node, particle, shape);
             impose_essential(node, mass, &model.fixed);

@@ -45,9 +45,10 @@ pub fn start<const D: usize>(
     discard(node);
     tabulate(shape, scratch, particle, model)?;
     transfer(node, mass, particle, shape)?;
-    balance_forces(node, mass, particle, shape, model, 0.0);
+    balance_forces(node, particle, shape, model, 0.0);
+    accelerate(node, mass);
     for p in 0..particle.len() {
-        particle.a[p] = sums::to_particle(&node.ma, node, shape, p);
+        particle.a[p] = sums::interpolate(&node.a, shape, p);
     }
     Ok(())
 }
@@ -78,7 +79,10 @@ pub fn step<const D: usize>(
             map_acceleration(node, mass, particle, shape, &model.fixed); // a_I^k
             impose_essential(node, mass, &model.fixed);
         }
-        4 => balance_forces(node, mass, particle, shape, model, t),
+        4 => {
+            balance_forces(node, particle, shape, model, t);
+            accelerate(node, mass);
+        }
         5 => balance_accelerations(node, &parameters), // a_I^{k+1}
         6 => move_particles(particle, node, shape, &parameters, dt), // (24) (25) (26)
         _ => {
@@ -89,14 +93,11 @@ pub fn step<const D: usize>(
     Ok(())
 }
 
-/// Solves m_I ((1 − α_m) a_I^{k+1} + α_m a_I^k) = f_I^k for a_I^{k+1}.
+/// Solves (1 − α_m) a_I^{k+1} + α_m a_I^k = a_I for a_I^{k+1}, where a_I is that of the forces.
 pub fn balance_accelerations<const D: usize>(node: &mut Nodes<D>, parameters: &Parameters) {
     let alpha_m = parameters.alpha_m;
     for I in 0..node.len() {
-        if node.m[I] > 0.0 {
-            let balance = node.ma[I] / node.m[I] - node.a[I] * alpha_m;
-            node.a_next[I] = balance / (1.0 - alpha_m);
-        }
+        node.a_next[I] = (node.a[I] - node.a_last[I] * alpha_m) / (1.0 - alpha_m);
     }
 }
 
@@ -113,7 +114,7 @@ pub fn move_particles<const D: usize>(
     for p in 0..particle.len() {
         let (mut v_p, mut x_p, mut a_p) = (SVector::zeros(), SVector::zeros(), SVector::zeros());
         for (I, N_Ip, _) in shape.of(p) {
-            let (old, new) = (node.a[I], node.a_next[I]);
+            let (old, new) = (node.a_last[I], node.a_next[I]);
             v_p += (old * (1.0 - gamma) + new * *gamma) * N_Ip;
             x_p += (node.v[I] * dt + (old * (0.5 - beta) + new * *beta) * (dt * dt)) * N_Ip;
             a_p += new * N_Ip;
@@ -128,7 +129,7 @@ pub fn move_particles<const D: usize>(
 pub fn average_velocity<const D: usize>(node: &mut Nodes<D>, parameters: &Parameters, dt: f64) {
     let beta = parameters.beta;
     for I in 0..node.len() {
-        node.v[I] += (node.a[I] * (0.5 - beta) + node.a_next[I] * beta) * dt;
+        node.v[I] += (node.a_last[I] * (0.5 - beta) + node.a_next[I] * beta) * dt;
     }
 }
 // ANCHOR_END: generalized_alpha

@@ -35,7 +35,10 @@ pub fn step<const D: usize>(
             update_density(particle)?; // (17)
             update_stress(particle, &model.law); // (3)
         }
-        7 => balance_forces(node, mass, particle, shape, model, t), // (14) (15) (18)
+        7 => {
+            balance_forces(node, particle, shape, model, t); // (14) (15)
+            accelerate(node, mass); // (18)
+        }
         8 => integrate_momentum(node, dt, reading),
         _ => correct(particle, node, shape, dt), // (29)
     }

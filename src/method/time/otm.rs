@@ -25,16 +25,15 @@ pub const STEPS: usize = 7;
 /// Since the nodal mass stays, so does the momentum, to round-off.
 pub fn start<const D: usize>(state: &mut State<D>, model: &Model<D>) -> Result<(), Breakdown> {
     tabulate_again(state, model)?;
-    let State { particle, node, shape, mass, .. } = state;
-    sums::lumped_mass(node, particle, shape);
-    sums::momentum(node, particle, shape);
+    let State { particle, node, shape, .. } = state;
+    sums::mass_and_momentum(node, particle, shape);
     for &(a, i) in &model.fixed {
         node.p[a][i] = 0.0;
     }
     for a in 0..node.len() {
         node.v[a] = node.p[a] / node.m[a];
     }
-    balance_forces(node, mass, particle, shape, model, 0.0);
+    balance_forces(node, particle, shape, model, 0.0);
     show_velocity(particle, node, shape);
     Ok(())
 }
@@ -49,7 +48,7 @@ pub fn step<const D: usize>(
     dt: f64,
     t: f64,
 ) -> Result<(), Breakdown> {
-    let State { particle, node, shape, mass, .. } = state;
+    let State { particle, node, shape, .. } = state;
     match n {
         1 => kick(node, 0.5 * dt),
         2 => move_nodes(node, dt),
@@ -58,7 +57,7 @@ pub fn step<const D: usize>(
         5 => tabulate_again(state, model)?,             // N_ap at k+1
         6 => {
             node.f.fill(SVector::zeros());
-            balance_forces(node, mass, particle, shape, model, t);
+            balance_forces(node, particle, shape, model, t);
         }
         _ => {
             kick(node, 0.5 * dt);

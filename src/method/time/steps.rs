@@ -20,7 +20,8 @@ pub const NEWMARK_GAMMA: f64 = 0.5;
 /// (27) x_p += Δt Σ_I p_I N_Ip / m_I + ½ Δt² Σ_I f_I N_Ip / m_I
 /// and (28) v_p += (1 − γ) Δt Σ_I f_I N_Ip / m_I.
 ///
-/// p_I and f_I are here m_I v_I and m_I a_I, what the mass matrix has made of them.
+/// p_I / m_I stands as v_I at the nodes. The sum with f_I / m_I is a_p: the last corrector has
+/// taken it, at the same nodes with the same N_Ip.
 pub fn predict<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -28,8 +29,7 @@ pub fn predict<const D: usize>(
     dt: f64,
 ) {
     for p in 0..particle.len() {
-        let v_p = sums::to_particle(&node.mv, node, shape, p);
-        let a_p = sums::to_particle(&node.ma, node, shape, p);
+        let (v_p, a_p) = (sums::interpolate(&node.v, shape, p), particle.a[p]);
         particle.x[p] += v_p * dt + a_p * (0.5 * dt * dt);
         particle.v[p] += a_p * ((1.0 - NEWMARK_GAMMA) * dt);
     }
@@ -43,9 +43,8 @@ pub fn discard<const D: usize>(node: &mut Nodes<D>) {
     node.p.fill(SVector::zeros());
     node.v.fill(SVector::zeros());
     node.f.fill(SVector::zeros());
-    node.mv.fill(SVector::zeros());
-    node.ma.fill(SVector::zeros());
     node.a.fill(SVector::zeros());
+    node.a_last.fill(SVector::zeros());
     node.a_next.fill(SVector::zeros());
 }
 // ANCHOR_END: discard
@@ -77,15 +76,14 @@ pub fn transfer<const D: usize>(
     particle: &Particles<D>,
     shape: &Shape<D>,
 ) -> Result<(), Breakdown> {
-    sums::lumped_mass(node, particle, shape);
-    sums::momentum(node, particle, shape);
+    sums::mass_and_momentum(node, particle, shape);
     mass.assemble(particle, shape, &node.m)
 }
 // ANCHOR_END: transfer
 
 // ANCHOR: impose_essential
-/// Step 4 sets p_I = 0 where the boundary is fixed, then v_I = p_I / m_I  (m/s), or to
-/// the solution of (12) with the consistent mass matrix.
+/// Step 4 sets p_I = 0 where the boundary is fixed, then v_I = p_I / m_I  (m/s), or the
+/// solution of (12) with the consistent mass matrix.
 pub fn impose_essential<const D: usize>(
     node: &mut Nodes<D>,
     mass: &mut MassMatrix<D>,
@@ -94,17 +92,7 @@ pub fn impose_essential<const D: usize>(
     for &(I, i) in fixed {
         node.p[I][i] = 0.0;
     }
-    mass.solve(&mut node.mv, &node.p, &node.m);
-    update_velocity(node);
-}
-
-/// Takes v_I from m_I v_I  (m/s); a node without mass keeps the velocity 0.
-pub fn update_velocity<const D: usize>(node: &mut Nodes<D>) {
-    for I in 0..node.len() {
-        if node.m[I] > 0.0 {
-            node.v[I] = node.mv[I] / node.m[I];
-        }
-    }
+    mass.solve(&mut node.v, &node.p, &node.m);
 }
 // ANCHOR_END: impose_essential
 
@@ -153,11 +141,9 @@ pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &LinearEl
 
 // ANCHOR: balance_forces
 /// Step 7 balances the forces: f_I = f_I^int + f_I^ext, (14) (15), with the loads of time
-/// `t` (s), and f_I = 0 where the boundary is fixed  (N); then m_I a_I, which is f_I, or the
-/// solution of (12) with the consistent mass matrix.
+/// `t` (s), and f_I = 0 where the boundary is fixed  (N).
 pub fn balance_forces<const D: usize>(
     node: &mut Nodes<D>,
-    mass: &mut MassMatrix<D>,
     particle: &Particles<D>,
     shape: &Shape<D>,
     model: &Model<D>,
@@ -170,13 +156,18 @@ pub fn balance_forces<const D: usize>(
     for &(I, i) in &model.fixed {
         node.f[I][i] = 0.0;
     }
-    mass.solve(&mut node.ma, &node.f, &node.m);
+}
+
+/// Step 7 takes the acceleration from them, (18): a_I = f_I / m_I  (m/s²), or the solution of
+/// (12) with the consistent mass matrix.
+pub fn accelerate<const D: usize>(node: &mut Nodes<D>, mass: &mut MassMatrix<D>) {
+    mass.solve(&mut node.a, &node.f, &node.m);
 }
 // ANCHOR_END: balance_forces
 
 // ANCHOR: integrate_momentum
 /// Step 8 integrates the momentum: p_I += γ f_I Δt, or f_I Δt as printed  (kg m/s);
-/// m_I v_I likewise.
+/// v_I likewise with a_I.
 pub fn integrate_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64, reading: StepEight) {
     let share = match reading {
         StepEight::SecondOrder => NEWMARK_GAMMA,
@@ -184,7 +175,7 @@ pub fn integrate_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64, reading:
     };
     for I in 0..node.len() {
         node.p[I] += node.f[I] * (share * dt);
-        node.mv[I] += node.ma[I] * (share * dt);
+        node.v[I] += node.a[I] * (share * dt);
     }
 }
 // ANCHOR_END: integrate_momentum
@@ -199,8 +190,9 @@ pub fn correct<const D: usize>(
     dt: f64,
 ) {
     for p in 0..particle.len() {
-        let a_p = sums::to_particle(&node.ma, node, shape, p);
+        let a_p = sums::interpolate(&node.a, shape, p);
         particle.v[p] += a_p * (NEWMARK_GAMMA * dt);
+        particle.a[p] = a_p; // for the next predictor
     }
 }
 // ANCHOR_END: correct
@@ -223,17 +215,17 @@ pub fn update_material<const D: usize>(
     Ok(())
 }
 
-/// (18) advances the momentum: p_I += f_I Δt  (kg m/s), m_I v_I likewise, and v_I  (m/s).
+/// (18) advances the momentum: p_I += f_I Δt  (kg m/s), and v_I += a_I Δt  (m/s).
 pub fn advance_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64) {
     for I in 0..node.len() {
         node.p[I] += node.f[I] * dt;
-        node.mv[I] += node.ma[I] * dt;
+        node.v[I] += node.a[I] * dt;
     }
-    update_velocity(node);
 }
 
 /// Moves the particles by (20) v_p += Δt Σ_I N_Ip a_I and (21) x_p += Δt Σ_I N_Ip v_I, with
-/// a_I = f_I/m_I and v_I = p_I/m_I of the advanced momentum.
+/// a_I = f_I / m_I and v_I = p_I / m_I of the advanced momentum. (23) and (22) are the same
+/// sums.
 pub fn move_with_nodes<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -241,22 +233,8 @@ pub fn move_with_nodes<const D: usize>(
     dt: f64,
 ) {
     for p in 0..particle.len() {
-        particle.v[p] += sums::to_particle_divided(&node.ma, node, shape, p) * dt;
-        particle.x[p] += sums::to_particle_divided(&node.mv, node, shape, p) * dt;
-    }
-}
-
-/// Moves the particles by (23) v_p += Δt Σ_I N_Ip f_I / m_I and (22) x_p += Δt Σ_I N_Ip p_I
-/// / m_I.
-pub fn move_with_shares<const D: usize>(
-    particle: &mut Particles<D>,
-    node: &Nodes<D>,
-    shape: &Shape<D>,
-    dt: f64,
-) {
-    for p in 0..particle.len() {
-        particle.v[p] += sums::to_particle(&node.ma, node, shape, p) * dt;
-        particle.x[p] += sums::to_particle(&node.mv, node, shape, p) * dt;
+        particle.v[p] += sums::interpolate(&node.a, shape, p) * dt;
+        particle.x[p] += sums::interpolate(&node.v, shape, p) * dt;
     }
 }
 
@@ -281,16 +259,16 @@ pub fn map_acceleration<const D: usize>(
     shape: &Shape<D>,
     fixed: &Fixed,
 ) {
-    for (I, p, N_Ip, _) in shape.pairs() {
-        node.a[I] += particle.a[p] * (particle.m[p] * N_Ip);
+    node.a.fill(SVector::zeros()); // for once m_I a_I
+    for p in 0..particle.len() {
+        for (I, N_Ip, _) in shape.of(p) {
+            node.a[I] += particle.a[p] * (particle.m[p] * N_Ip);
+        }
     }
     for &(I, i) in fixed {
         node.a[I][i] = 0.0;
     }
-    mass.solve(&mut node.ma, &node.a, &node.m);
-    for I in 0..node.len() {
-        node.a[I] = if node.m[I] > 0.0 { node.ma[I] / node.m[I] } else { node.ma[I] };
-    }
+    mass.solve(&mut node.a_last, &node.a, &node.m);
 }
 
 /// Stops a run in the step in which a particle stops being finite; a density must
@@ -299,16 +277,21 @@ pub fn map_acceleration<const D: usize>(
 /// Errors: [`Breakdown::NotFinite`] with the first such particle.
 pub fn finite<const D: usize>(particle: &Particles<D>) -> Result<(), Breakdown> {
     for p in 0..particle.len() {
-        let symbol = if !particle.x[p].iter().all(|x| x.is_finite()) {
-            "position"
-        } else if !particle.v[p].iter().all(|v| v.is_finite()) {
-            "velocity"
-        } else if !particle.sigma[p].iter().all(|s| s.is_finite()) {
-            "stress"
-        } else if !(particle.rho[p].is_finite() && particle.rho[p] > 0.0) {
-            "density"
-        } else {
+        // 0 times a number is 0, and else NaN.
+        let (x, v, sigma) = (particle.x[p] * 0.0, particle.v[p] * 0.0, particle.sigma[p] * 0.0);
+        let nothing = (x + v).sum() + sigma.sum() + particle.rho[p] * 0.0;
+        if nothing == 0.0 && particle.rho[p] > 0.0 {
             continue;
+        }
+        let finite = |list: &[f64]| list.iter().all(|number| number.is_finite());
+        let symbol = if !finite(particle.x[p].as_slice()) {
+            "position"
+        } else if !finite(particle.v[p].as_slice()) {
+            "velocity"
+        } else if !finite(particle.sigma[p].as_slice()) {
+            "stress"
+        } else {
+            "density"
         };
         return Err(Breakdown::NotFinite { particle: p, symbol });
     }

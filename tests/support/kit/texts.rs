@@ -40,7 +40,7 @@ pub fn basis(sets: &[&str]) -> String {
     kernel.at(0, 2).shapes(&table.shape);
     kernel.gradients(&table.shape);
     if let Basis::Lme { .. } = model.basis {
-        kernel.multipliers(&table.lambda, &model.grid.h);
+        kernel.multipliers(table.lambda.iter().copied(), &model.grid.h);
     }
     in_both(&kernel.entries)
 }

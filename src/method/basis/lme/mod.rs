@@ -19,6 +19,7 @@
 //! small for a number; the answer is [`Failure::NotConverged`]. With the default
 //! cut-off such a point is on the side of its cell, and is served.
 
+mod axis;
 mod failure;
 mod functions;
 pub mod plain;
@@ -26,6 +27,7 @@ mod search;
 mod seen;
 mod weights;
 
+pub use axis::{AxisFunctions, AxisPoint, solve_axis};
 pub use failure::Failure;
 
 use crate::method::continuum::shape::Shape;

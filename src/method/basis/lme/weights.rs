@@ -7,7 +7,10 @@ use crate::method::cost::Cost;
 use nalgebra::{SMatrix, SVector};
 
 /// On a grid the exponentials are factorised up to a distance of so many cells.
-const FEW: usize = 6;
+pub const FEW: usize = 6;
+
+/// Exponents up to this size are safe to multiply.
+pub const MOST: f64 = 300.0;
 
 /// These are the weights of the nodes that share, and what the next ones are made from.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,11 +20,29 @@ pub struct Weights {
     /// Σ exp f_I is Z exp(largest).
     pub largest: f64,
     pub Z: f64,
-    /// exp(−γk²) for k = 0, 1, … and the γ it is for.
-    gauss: [f64; FEW + 1],
-    gauss_gamma: f64,
+    gauss: Gauss,
     /// Exponential functions and Newton iterations so far.
     pub cost: Cost,
+}
+
+/// Keeps exp(−γk²) for k = 0, 1, … and the γ it is for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gauss {
+    of: [f64; FEW + 1],
+    gamma: f64,
+}
+
+impl Gauss {
+    /// Gives exp(−γk²), made anew when γ is another.
+    #[inline]
+    pub fn at(&mut self, gamma: f64, cost: &mut Cost) -> &[f64; FEW + 1] {
+        if self.gamma != gamma {
+            self.of = std::array::from_fn(|k| libm::exp(-gamma * (k * k) as f64));
+            self.gamma = gamma;
+            cost.exponentials += self.of.len() as u64;
+        }
+        &self.of
+    }
 }
 
 /// Moments are Z, r and J at one μ.
@@ -114,24 +135,19 @@ fn factorised<const D: usize>(
     gamma: f64,
     mu: &SVector<f64, D>,
 ) -> bool {
-    const MOST: f64 = 300.0;
     let reach = seen.reach;
     let K = FEW as f64;
     if !(seen.on_grid && reach <= K && gamma * reach * reach < MOST && mu.amax() * reach < MOST) {
         return false;
     }
-    if weights.gauss_gamma != gamma {
-        weights.gauss = std::array::from_fn(|k| libm::exp(-gamma * (k * k) as f64));
-        weights.gauss_gamma = gamma;
-        weights.cost.exponentials += weights.gauss.len() as u64;
-    }
+    let gauss = weights.gauss.at(gamma, &mut weights.cost);
     let mut factor = [[0.0; 2 * FEW + 1]; D];
     for d in 0..D {
         let (up, mut power) = (libm::exp(mu[d]), 1.0);
         let (down, mut inverse) = (1.0 / up, 1.0);
         for k in 0..=reach as usize {
-            factor[d][FEW + k] = weights.gauss[k] * power;
-            factor[d][FEW - k] = weights.gauss[k] * inverse;
+            factor[d][FEW + k] = gauss[k] * power;
+            factor[d][FEW - k] = gauss[k] * inverse;
             power *= up;
             inverse *= down;
         }
