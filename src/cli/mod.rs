@@ -80,11 +80,17 @@ fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, quiet: bool) ->
         Some(steps),
         if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() },
     );
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} steps, {eta} left") {
-        bar.set_style(style);
-    }
+    let template =
+        |text: &str| ProgressStyle::with_template(text).unwrap_or(ProgressStyle::default_bar());
+    // With wide functions in 3D this takes as long as some steps.
+    bar.set_style(template("predicting the largest stable time step ({elapsed})"));
+    bar.enable_steady_tick(std::time::Duration::from_millis(250));
     let tell = (steps / 200).max(1);
     let lines = report::run_into(&dir, scene, &mut |step| {
+        if step == 1 {
+            bar.disable_steady_tick();
+            bar.set_style(template("{bar:40} {pos}/{len} steps, {eta} left"));
+        }
         if (step as u64).is_multiple_of(tell) {
             bar.set_position(step as u64);
         }

@@ -59,12 +59,18 @@ impl LinearElastic {
         SMatrix::identity() * (self.lambda * d_eps.trace()) + d_eps * (2.0 * self.mu)
     }
 
-    /// Gives ½ σ : D⁻¹ : σ, the elastic energy per volume (J/m³); (3) inverted says
-    /// D⁻¹ : σ = (σ − λ tr(σ) / (dλ + 2μ) 1) / 2μ in d dimensions.
+    /// Gives ½ σ : D⁻¹ : σ, the elastic energy per volume (J/m³): with s = σ − tr(σ)/d 1 in d
+    /// dimensions it is s : s / 4μ + tr(σ)² / (2d (dλ + 2μ)).
+    #[inline]
     pub fn energy_density<const D: usize>(&self, sigma: &SMatrix<f64, D, D>) -> f64 {
-        let share = self.lambda / (D as f64 * self.lambda + 2.0 * self.mu);
-        let eps = (sigma - SMatrix::identity() * (share * sigma.trace())) * (1.0 / (2.0 * self.mu));
-        0.5 * sigma.dot(&eps)
+        let d = D as f64;
+        let trace = sigma.trace();
+        let of_volume = trace * trace * (0.5 / (d * (d * self.lambda + 2.0 * self.mu)));
+        if D == 1 {
+            return of_volume;
+        }
+        let s = sigma - SMatrix::identity() * (trace / d);
+        of_volume + s.dot(&s) * (0.25 / self.mu)
     }
 }
 // ANCHOR_END: elastic
