@@ -2,6 +2,8 @@
 
 mod analytical;
 mod basis;
+#[path = "bench/cases.rs"]
+mod bench_cases;
 mod book;
 mod cli;
 mod conformance;

@@ -1,5 +1,6 @@
 //! The table of shape functions: rows that are products, and rows that are lists.
 
+use crate::bench_cases::{CASES, HEADER, advance, one_step, row, scene, warm};
 use crate::support::*;
 use lme_mpm::method::continuum::shape::Shape;
 use lme_mpm::method::continuum::state::Nodes;
@@ -81,4 +82,40 @@ fn table_is_small() {
     let [product, list] = [&shape, &list].map(|shape| shape.bytes() / particle.len());
     let pairs = shape.len() / particle.len();
     assert!(product < 1000 && list > 20 * product, "{pairs} nodes: {product} and {list} bytes");
+}
+
+/// What the book's table of instructions says of nodes and bytes is so: every row of
+/// `data/instructions/time-step.csv`, whose last column alone is counted elsewhere.
+#[test]
+fn table_of_instructions_is_current() {
+    let path = format!("{}/data/instructions/time-step.csv", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), HEADER.lines().next());
+    for n in 0..CASES.len() {
+        for expected in [row::<1>(n), row::<2>(n), row::<3>(n)] {
+            let (counted, instructions) = lines.next().unwrap().rsplit_once(',').unwrap();
+            assert_eq!(
+                counted, expected,
+                "`cargo bench --bench instructions -- --write` writes it"
+            );
+            assert!(instructions.parse::<f64>().unwrap() > 100.0);
+        }
+    }
+    assert_eq!(lines.next(), None);
+}
+
+/// What is measured as one step does a step's work and moves nothing: Δt is 0. What is measured
+/// as a time step moves the block.
+#[test]
+fn benches_measure_what_they_say() {
+    let (model, mut state) = warm::<2>(&scene::<2>(CASES[3]));
+    let before = state.particle.clone();
+    for n in 1..=9 {
+        one_step(n, &model, &mut state);
+    }
+    assert_eq!((&state.particle.x, &state.particle.v), (&before.x, &before.v));
+    assert_eq!(state.particle.sigma, before.sigma);
+    advance(&model, &mut state, 11);
+    assert!(state.particle.x != before.x && state.particle.v != before.v);
 }

@@ -31,11 +31,11 @@ pub struct Shape<const D: usize> {
 struct Row<const D: usize> {
     /// The node with the lowest index along every axis.
     first: usize,
-    /// Nodes along each axis; 0 for a list.
-    count: [usize; D],
     start: usize,
+    /// Nodes along each axis; 0 for a list.
+    count: [u32; D],
     /// Lines of the row.
-    lines: usize,
+    lines: u32,
     /// Some N is 0 or tiny: that node may be without mass.
     tiny: bool,
 }
@@ -44,7 +44,7 @@ struct Row<const D: usize> {
 impl<const D: usize> Row<D> {
     /// Counts the nodes.
     fn pairs(&self) -> usize {
-        self.lines * self.count[0].max(1)
+        self.lines as usize * self.count[0].max(1) as usize
     }
 }
 
@@ -103,12 +103,12 @@ impl<const D: usize> Shape<D> {
     #[inline(always)]
     pub fn push_product(&mut self, axes: [(usize, &[Factor]); D]) {
         let start = self.factor.len();
-        let (mut first, mut count, mut tiny) = (0, [0; D], false);
+        let (mut first, mut count, mut tiny) = (0, [0_u32; D], false);
         for d in 0..D {
             let (node, factors) = axes[d];
             self.factor.extend_from_slice(factors);
             first += node * self.stride[d];
-            count[d] = factors.len();
+            count[d] = factors.len() as u32;
             tiny |= factors.iter().any(|factor| factor.N < TINY);
         }
         self.end_row(Row { first, count, start, lines: count[1..].iter().product(), tiny });
@@ -121,8 +121,8 @@ impl<const D: usize> Shape<D> {
 
     /// Ends the list, which is the row of the current particle.
     pub fn end_list(&mut self) {
-        let start = self.row.last().map_or(0, |row| row.start + row.lines);
-        let lines = self.listed.len() - start;
+        let start = self.row.last().map_or(0, |row| row.start + row.lines as usize);
+        let lines = (self.listed.len() - start) as u32;
         let tiny = self.listed[start..].iter().any(|listed| listed.N < TINY);
         self.end_row(Row { first: 0, count: [0; D], start, lines, tiny });
     }
@@ -169,7 +169,7 @@ impl<const D: usize> Shape<D> {
         } else if row.count[0] > 0 {
             self.product::<0>(row, each);
         } else {
-            for n in 0..row.lines {
+            for n in 0..row.lines as usize {
                 each(self.listed_line(row, n));
             }
         }
@@ -178,7 +178,7 @@ impl<const D: usize> Shape<D> {
     /// Shows the lines of a product with `W` nodes along each axis; with any number if 0.
     #[inline(always)]
     fn product<const W: usize>(&self, row: &Row<D>, mut each: impl FnMut(Line<D>)) {
-        let count = if W > 0 { [W; D] } else { row.count };
+        let count = if W > 0 { [W; D] } else { row.count.map(|count| count as usize) };
         let factors = &self.factor[row.start..][..count.iter().sum()];
         for k in 0..if D > 2 { count[2] } else { 1 } {
             for j in 0..if D > 1 { count[1] } else { 1 } {
@@ -221,11 +221,12 @@ impl<const D: usize> Shape<D> {
         let row = &self.row[p];
         let is_list = row.count[0] == 0;
         let factors = &self.factor[if is_list { 0 } else { row.start }..];
-        let along = if D > 1 { row.count[1].max(1) } else { 1 };
-        (0..row.lines).flat_map(move |n| {
+        let count = row.count.map(|count| count as usize);
+        let along = if D > 1 { count[1].max(1) } else { 1 };
+        (0..row.lines as usize).flat_map(move |n| {
             let line = match is_list {
                 true => self.listed_line(row, n),
-                false => self.product_line(row.first, factors, row.count, [n % along, n / along]),
+                false => self.product_line(row.first, factors, count, [n % along, n / along]),
             };
             line.entries()
         })
