@@ -2,9 +2,9 @@
 
 mod analytical;
 mod basis;
-#[path = "bench/cases.rs"]
-mod bench_cases;
 mod book;
+#[path = "bench/cases.rs"]
+mod cases;
 mod cli;
 mod conformance;
 mod conservation;
@@ -27,6 +27,8 @@ mod port;
 mod refusals;
 mod regression;
 mod riemann;
+#[path = "bench/rows.rs"]
+mod rows;
 mod runs;
 mod scenes;
 mod search;

@@ -1,6 +1,7 @@
 //! The table of shape functions: rows that are products, and rows that are lists.
 
-use crate::bench_cases::{CASES, HEADER, advance, one_step, row, scene, warm};
+use crate::cases::{CASES, advance, one_step, scene, warm};
+use crate::rows::{HEADER, row};
 use crate::support::*;
 use lme_mpm::method::continuum::shape::Shape;
 use lme_mpm::method::continuum::state::Nodes;

@@ -5,8 +5,10 @@
 //! book takes them. Needs valgrind.
 
 mod cases;
+mod rows;
 
-use cases::{CASES, Case, HEADER, advance, one_step, row, scene, warm};
+use cases::{CASES, Case, advance, one_step, scene, warm};
+use rows::{HEADER, row};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
