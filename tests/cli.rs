@@ -285,6 +285,69 @@ fn studies_as_commands() {
     assert_fails(&output, 2, &["no exact solution", "more than one dimension"]);
 }
 
+/// A study whose rows run one by one, each a command of `--list`, is the study: γ, all of its
+/// 36 rows, the merged table byte for byte.
+#[test]
+fn studies_run_row_by_row() {
+    let dir = directory("rows");
+    let whole = program(&dir, &["gamma", "--out", "whole"]);
+    assert!(whole.status.success(), "{}", text(&whole.stderr));
+    let list = text(&program(&dir, &["gamma", "--list"]).stdout);
+    let mut merge = vec!["gamma".to_string(), "--out".into(), "merged".into(), "--merge".into()];
+    for (n, line) in list.lines().enumerate() {
+        let row = line.strip_prefix("lme-mpm gamma --row '").unwrap().strip_suffix('\'').unwrap();
+        let output = program(&dir, &["gamma", "--row", row]);
+        assert!(output.status.success(), "{row}: {}", text(&output.stderr));
+        fs::write(dir.join(format!("{n}.csv")), &output.stdout).unwrap();
+        merge.push(format!("{n}.csv"));
+    }
+    assert_eq!(merge.len(), 4 + 36);
+    let merge: Vec<&str> = merge.iter().map(String::as_str).collect();
+    let output = program(&dir, &merge);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(files(&dir.join("merged")), files(&dir.join("whole")));
+    for name in files(&dir.join("whole")) {
+        let read = |folder: &str| fs::read(dir.join(folder).join(&name)).unwrap();
+        assert!(read("merged") == read("whole"), "{name}");
+    }
+    // A row of the map of stability is found by its name, on any scene.
+    let scene = ["stability", "--scene", "vibration"];
+    let list = text(&program(&dir, &[&scene[..], &["--list"]].concat()).stdout);
+    let row = list.lines().next().unwrap().split_once("--row '").unwrap().1.trim_end_matches('\'');
+    let output = program(&dir, &[&scene[..], &["--row", row]].concat());
+    let printed = text(&output.stdout);
+    assert!(printed.starts_with("scene,method,") && printed.lines().count() == 2, "{printed}");
+    fs::write(dir.join("map.csv"), &printed).unwrap();
+    // Refused by name, and nothing written.
+    let lines: Vec<String> =
+        fs::read_to_string(dir.join("0.csv")).unwrap().lines().map(String::from).collect();
+    fs::write(dir.join("cut.csv"), format!("{}\n{}", lines[0], &lines[1][..60])).unwrap();
+    let scene = lines[1].split(',').next().unwrap();
+    fs::write(dir.join("other.csv"), lines.join("\n").replace(scene, "0") + "\n").unwrap();
+    fs::write(dir.join("none.csv"), format!("{}\n", lines[0])).unwrap();
+    for (study, parts, words) in [
+        (
+            "gamma",
+            &["0.csv", "1.csv"][..],
+            &["--merge", "34 of 36 rows are missing, the first is `mpm lumped 0.8`"][..],
+        ),
+        ("gamma", &["0.csv", "0.csv"], &["0.csv, line 2", "a second time"]),
+        ("gamma", &["cut.csv"], &["cut.csv, line 2", "not a whole row"]),
+        ("gamma", &["other.csv"], &["other.csv, line 2", "another scene"]),
+        ("gamma", &["none.csv"], &["none.csv, line 1", "there is no row"]),
+        ("gamma", &["map.csv"], &["map.csv, line 1", "other columns"]),
+        ("stability", &["map.csv"], &["map.csv, line 2", "another scene"]),
+    ] {
+        let arguments = [&[study, "--out", "bad", "--merge"], parts].concat();
+        assert_fails(&program(&dir, &arguments), 2, words);
+    }
+    assert_fails(&program(&dir, &["gamma", "--row", "otm 7"]), 2, &["--row", "no row `otm 7`"]);
+    assert!(!dir.join("bad").exists());
+    fs::copy(dir.join("0.csv"), dir.join("gamma.csv")).unwrap();
+    let output = program(&dir, &["gamma", "--out", ".", "--merge", "gamma.csv"]);
+    assert_fails(&output, 2, &["gamma.csv"]);
+}
+
 /// `recommend` writes a scene that runs and keeps its promise.
 #[test]
 fn recommended_scene_reaches_the_error() {

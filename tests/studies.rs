@@ -402,7 +402,7 @@ fn trade_on_the_bar() {
 /// the right speed to a thousandth; lumped, they are late.
 #[test]
 fn gamma_from_end_to_end() {
-    let rows = gamma::study(2, &mut || {}).unwrap();
+    let rows = gamma::study(&gamma::items(), 2, &mut || {}).unwrap();
     let effect = |way: &str, gamma: f64| -> Effect {
         let row = rows.iter().find(|row| row.way == way && row.gamma == gamma).unwrap();
         *row.effect.as_ref().unwrap()

@@ -161,8 +161,12 @@ pub enum Command {
     /// Writes gamma.csv and pictures: errors, overshoot, total variation,
     /// dispersion, energy drift, cost and the largest stable time step against γ,
     /// for MPM with both mass matrices and for OTM.
-    #[command(after_help = "Example:\n  lme-mpm gamma --out out/gamma")]
+    #[command(
+        after_help = "Example:\n  lme-mpm gamma --out out/gamma\n  lme-mpm gamma --list | parallel --jobs 2 '{}' '>' 'rows/{#}.csv'\n  lme-mpm gamma --out out/gamma --merge rows/*.csv"
+    )]
     Gamma {
+        #[command(flatten)]
+        rows: RowArguments,
         /// Where to write
         #[arg(long, value_name = "DIR", default_value = "out/gamma")]
         out: PathBuf,
@@ -174,8 +178,12 @@ pub enum Command {
     ///
     /// Writes stability.csv for every basis, integrator, mass, number of particles
     /// per cell and offset on the grid of a scene.
-    #[command(after_help = "Example:\n  lme-mpm stability --out out/stability --jobs 2")]
+    #[command(
+        after_help = "Example:\n  lme-mpm stability --out out/stability --jobs 2\n  lme-mpm stability --list | parallel --jobs 2 '{}' '>' 'rows/{#}.csv'\n  lme-mpm stability --out out/stability --merge rows/*.csv"
+    )]
     Stability {
+        #[command(flatten)]
+        rows: RowArguments,
         /// The scene, a file or a shipped one; the bar on 10 cells without it
         #[arg(long, value_name = "FILE")]
         scene: Option<PathBuf>,
@@ -218,13 +226,20 @@ pub struct TradeArguments {
     /// Threads; each run has one of its own
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     pub jobs: u16,
+    #[command(flatten)]
+    pub rows: RowArguments,
+}
+
+/// Where one machine is not enough, the rows of a study run by themselves.
+#[derive(Args)]
+pub struct RowArguments {
     /// Print the command of every row and do nothing
     #[arg(long, conflicts_with_all = ["row", "merge"])]
     pub list: bool,
-    /// Run one row of --list and print its part of the log
-    #[arg(long, value_name = "CONFIGURATION", conflicts_with = "merge")]
+    /// Run one row of --list and print what comes out
+    #[arg(long, value_name = "ROW", conflicts_with = "merge")]
     pub row: Option<String>,
-    /// Gather logs that --row has printed
+    /// Gather what --row has printed
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub merge: Vec<PathBuf>,
 }

@@ -47,8 +47,10 @@ pub fn main() -> ExitCode {
         Some(Command::Recommend { scene, error, quantity, out, jobs }) => {
             studies::recommend(&scene, error, quantity, out, jobs)
         }
-        Some(Command::Gamma { out, jobs }) => studies::gamma(&out, jobs),
-        Some(Command::Stability { scene, out, jobs }) => studies::stability(scene, &out, jobs),
+        Some(Command::Gamma { rows, out, jobs }) => studies::gamma(&rows, &out, jobs),
+        Some(Command::Stability { rows, scene, out, jobs }) => {
+            studies::stability(&rows, scene.as_deref(), &out, jobs)
+        }
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

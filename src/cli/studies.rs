@@ -1,6 +1,6 @@
 //! These commands run studies.
 
-use super::arguments::TradeArguments;
+use super::arguments::{RowArguments, TradeArguments};
 use super::terminal::print_bytes;
 use indicatif::{ProgressBar, ProgressStyle};
 use lme_mpm::output::figure;
@@ -10,11 +10,12 @@ use lme_mpm::scene::DYKA;
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::setup;
 use lme_mpm::study::configuration::{Configuration, Template};
-use lme_mpm::study::gamma as gammas;
+use lme_mpm::study::gamma::{self as gammas, AtGamma};
 use lme_mpm::study::log::{self, TimedRun};
 use lme_mpm::study::map;
 use lme_mpm::study::measured::Criterion;
 use lme_mpm::study::ranking::{self, LEVELS, Tried};
+use lme_mpm::study::rows::{self, Study};
 use lme_mpm::study::trade as trades;
 use std::path::{Path, PathBuf};
 
@@ -44,19 +45,19 @@ fn comparable(template: &Template) -> Result<(), Fault> {
 pub fn trade(arguments: &TradeArguments) -> Result<(), Fault> {
     let template = template(arguments.scene.as_deref())?;
     comparable(&template)?;
-    if let Some(line) = &arguments.row {
+    if let Some(line) = &arguments.rows.row {
         return row(&template, line);
     }
-    if arguments.list {
+    if arguments.rows.list {
         return list(&template, arguments);
     }
     let dir = &arguments.out;
-    let rows = match arguments.merge.is_empty() {
+    let rows = match arguments.rows.merge.is_empty() {
         true => tried(&template, dir, arguments.full, arguments.jobs)?,
         false => {
             let scene = template.digest()?;
             let mut runs = Vec::new();
-            for path in &arguments.merge {
+            for path in &arguments.rows.merge {
                 files::spare(path, dir, |name| ["trade.csv", "cheapest.csv"].contains(&name))?;
                 runs.extend(log::read_whole(path, &scene)?);
             }
@@ -80,17 +81,18 @@ fn row(template: &Template, line: &str) -> Result<(), Fault> {
 
 /// Prints the command of every configuration, ready for a shell.
 fn list(template: &Template, arguments: &TradeArguments) -> Result<(), Fault> {
+    let grid = trades::grid(template, arguments.full)?;
+    let names: Vec<String> = grid.iter().map(Configuration::to_string).collect();
+    list_rows("trade", arguments.scene.as_deref(), &names)
+}
+
+/// Prints the command of every row of a study, ready for a shell.
+fn list_rows(study: &str, scene: Option<&Path>, names: &[String]) -> Result<(), Fault> {
     let quoted = |text: String| format!("'{}'", text.replace('\'', r"'\''"));
-    let scene = arguments
-        .scene
-        .as_ref()
+    let scene = scene
         .map_or(String::new(), |path| format!(" --scene {}", quoted(path.display().to_string())));
-    let mut lines = String::new();
-    for configuration in trades::grid(template, arguments.full)? {
-        let row = quoted(configuration.to_string());
-        lines += &format!("lme-mpm trade{scene} --row {row}\n");
-    }
-    print_bytes(lines.as_bytes())
+    let line = |name: &String| format!("lme-mpm {study}{scene} --row {}\n", quoted(name.clone()));
+    print_bytes(names.iter().map(line).collect::<String>().as_bytes())
 }
 
 /// Runs what the log in `dir` does not have yet; rows in the order of the grid.
@@ -222,12 +224,29 @@ fn evidence(front: &[(&Tried, f64)], best: &Tried) -> String {
 }
 
 /// Does `lme-mpm gamma`.
-pub fn gamma(dir: &Path, jobs: u16) -> Result<(), Fault> {
+pub fn gamma(arguments: &RowArguments, dir: &Path, jobs: u16) -> Result<(), Fault> {
+    let items = gammas::items();
+    let name = |(way, gamma): &gammas::Item| AtGamma::name(way.name, *gamma);
+    let names: Vec<String> = items.iter().map(name).collect();
+    if arguments.list {
+        return list_rows("gamma", None, &names);
+    }
+    if let Some(row) = &arguments.row {
+        let row = gammas::study(&[items[rows::find(&names, row)?]], 1, &mut || {})?;
+        return print_bytes(&rows::with_scene(&gammas::digest()?, &gammas::table(&row)?));
+    }
+    let rows = if arguments.merge.is_empty() {
+        prepare(dir)?;
+        let bar = progress(items.len());
+        let rows = gammas::study(&items, usize::from(jobs), &mut || bar.inc(1));
+        bar.finish_and_clear();
+        rows?
+    } else {
+        spare_all(&arguments.merge, dir, "gamma.csv")?;
+        let study = Study { scene: gammas::digest()?, columns: &gammas::columns(), names: &names };
+        study.merged(&arguments.merge, AtGamma::read)?
+    };
     prepare(dir)?;
-    let bar = progress(gammas::WAYS.len() * gammas::GAMMAS.len());
-    let rows = gammas::study(usize::from(jobs), &mut || bar.inc(1));
-    bar.finish_and_clear();
-    let rows = rows?;
     let mut files = vec![("gamma.csv".to_string(), gammas::table(&rows)?)];
     for name in gammas::Effect::default().named().map(|(name, _)| name) {
         let words = name.replace('_', " ");
@@ -240,20 +259,47 @@ pub fn gamma(dir: &Path, jobs: u16) -> Result<(), Fault> {
     print_bytes(format!("written to {}\n", dir.display()).as_bytes())
 }
 
+/// Refuses to write over what is merged: the study's own table in `dir`.
+fn spare_all(merge: &[PathBuf], dir: &Path, own: &str) -> Result<(), Fault> {
+    merge.iter().try_for_each(|path| files::spare(path, dir, |name| name == own))
+}
+
 /// Does `lme-mpm stability`.
-pub fn stability(scene: Option<PathBuf>, dir: &Path, jobs: u16) -> Result<(), Fault> {
-    let template = match &scene {
+pub fn stability(
+    arguments: &RowArguments,
+    scene: Option<&Path>,
+    dir: &Path,
+    jobs: u16,
+) -> Result<(), Fault> {
+    let template = match scene {
         Some(path) => template(Some(path))?,
         None => {
             let small = DYKA.replace("cells = 40", "cells = 10");
             Template::parse(Path::new("dyka.toml (built in)"), &small)?
         }
     };
-    prepare(dir)?;
     let combinations = map::combinations(&template)?;
-    let bar = progress(combinations.len());
-    let rows = map::map(&template, &combinations, usize::from(jobs), &mut || bar.inc(1));
-    bar.finish_and_clear();
+    let names: Vec<String> = combinations.iter().map(map::Combination::name).collect();
+    if arguments.list {
+        return list_rows("stability", scene, &names);
+    }
+    if let Some(row) = &arguments.row {
+        let one = &combinations[rows::find(&names, row)?];
+        let row = map::map(&template, std::slice::from_ref(one), 1, &mut || {});
+        return print_bytes(&rows::with_scene(&template.digest()?, &map::table(&row)?));
+    }
+    let rows = if arguments.merge.is_empty() {
+        prepare(dir)?;
+        let bar = progress(combinations.len());
+        let rows = map::map(&template, &combinations, usize::from(jobs), &mut || bar.inc(1));
+        bar.finish_and_clear();
+        rows
+    } else {
+        spare_all(&arguments.merge, dir, "stability.csv")?;
+        let study = Study { scene: template.digest()?, columns: &map::columns(), names: &names };
+        study.merged(&arguments.merge, |cells| map::Mapped::read(&combinations, cells))?
+    };
+    prepare(dir)?;
     write_all(dir, &[("stability.csv".to_string(), map::table(&rows)?)], &[])?;
     print_bytes(limits(dir, &rows).as_bytes())
 }

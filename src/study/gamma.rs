@@ -66,6 +66,26 @@ pub struct Effect {
 }
 
 impl Effect {
+    /// Reads the numbers in the order of [`Effect::named`].
+    fn read(cells: &[&str]) -> Option<Self> {
+        let numbers: Option<Vec<f64>> = cells.iter().map(|cell| cell.parse().ok()).collect();
+        let numbers: [f64; 10] = numbers?.try_into().ok()?;
+        let [velocity, stress, displacement, overshoot, total_variation, rest @ ..] = numbers;
+        let [dispersion, energy_drift, pairs, exponentials, critical_courant] = rest;
+        Some(Effect {
+            velocity,
+            stress,
+            displacement,
+            overshoot,
+            total_variation,
+            dispersion,
+            energy_drift,
+            pairs_per_particle: pairs,
+            exponentials_per_particle: exponentials,
+            critical_courant,
+        })
+    }
+
     /// Lists every number with its name, in the order of the columns.
     pub fn named(&self) -> [(&'static str, f64); 10] {
         [
@@ -91,17 +111,51 @@ pub struct AtGamma {
     pub effect: Result<Effect, String>,
 }
 
-/// Runs the bar of Dyka and Ingel at every γ in every way; `progress` hears of every one.
-pub fn study(jobs: usize, progress: &mut dyn FnMut()) -> Result<Vec<AtGamma>, Fault> {
+impl AtGamma {
+    /// Gives the name of its row: the way and γ.
+    pub fn name(way: &str, gamma: f64) -> String {
+        format!("{way} {}", shortest(gamma))
+    }
+
+    /// Reads a row of the table, with its name.
+    pub fn read(cells: &[&str]) -> Option<(String, Self)> {
+        let [way, gamma, numbers @ .., problem] = cells else { return None };
+        let way = WAYS.iter().find(|one| one.name == *way)?.name;
+        let gamma = gamma.parse().ok()?;
+        let effect = match *problem {
+            "" => Ok(Effect::read(numbers)?),
+            problem => Err(problem.to_string()),
+        };
+        Some((AtGamma::name(way, gamma), AtGamma { way, gamma, effect }))
+    }
+}
+
+/// A γ in a way is a row of the study.
+pub type Item = (&'static Way, f64);
+
+/// Lists all rows of the study.
+pub fn items() -> Vec<Item> {
+    WAYS.iter().flat_map(|way| GAMMAS.map(|gamma| (way, gamma))).collect()
+}
+
+/// Gives the digest of the study's scene.
+pub fn digest() -> Result<String, Fault> {
+    Template::parse(Path::new("dyka.toml"), DYKA)?.digest()
+}
+
+/// Runs the bar of Dyka and Ingel at some γ in some ways; `progress` hears of every one.
+pub fn study(
+    items: &[Item],
+    jobs: usize,
+    progress: &mut dyn FnMut(),
+) -> Result<Vec<AtGamma>, Fault> {
     let bar = Template::parse(Path::new("dyka.toml"), DYKA)?;
     let wave = Template::parse(Path::new("wave.toml"), WAVE)?;
-    let items: Vec<(&Way, f64)> =
-        WAYS.iter().flat_map(|way| GAMMAS.map(|gamma| (way, gamma))).collect();
-    let work = |(way, gamma): &(&Way, f64)| {
+    let work = |(way, gamma): &Item| {
         let effect = effect(&bar, &wave, way, *gamma);
         AtGamma { way: way.name, gamma: *gamma, effect }
     };
-    Ok(pool::all(&items, jobs, work, progress))
+    Ok(pool::all(items, jobs, work, progress))
 }
 
 /// Makes the configuration of one γ in one way.
@@ -183,8 +237,11 @@ pub fn table(rows: &[AtGamma]) -> Result<Vec<u8>, Fault> {
         cells.push(problem);
         cells
     };
-    let mut columns = vec!["way", "gamma"];
-    columns.extend(names);
-    columns.push("problem");
-    csv(&columns, rows.iter().map(line))
+    csv(&columns(), rows.iter().map(line))
+}
+
+/// Names the columns of the table.
+pub fn columns() -> Vec<&'static str> {
+    let names = Effect::default().named().map(|(name, _)| name);
+    ["way", "gamma"].into_iter().chain(names).chain(["problem"]).collect()
 }

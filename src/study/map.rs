@@ -128,7 +128,40 @@ pub fn table(rows: &[Mapped]) -> Result<Vec<u8>, Fault> {
         });
         cells
     };
-    let mut columns = KEYS.to_vec();
-    columns.extend(["offset", "predicted", "measured", "problem"]);
-    csv(&columns, rows.iter().map(line))
+    csv(&columns(), rows.iter().map(line))
+}
+
+/// Names the columns of the table.
+pub fn columns() -> Vec<&'static str> {
+    KEYS.into_iter().chain(["offset", "predicted", "measured", "problem"]).collect()
+}
+
+impl Combination {
+    /// Gives the name of its row: its `KEY=VALUE`, and the offset.
+    pub fn name(&self) -> String {
+        let keys = KEYS.iter().map(|key| (key, self.configuration.value(key)));
+        let known = keys.filter(|(_, value)| !value.is_empty());
+        let words: String = known.map(|(key, value)| format!("{key}={value} ")).collect();
+        format!("{words}offset={}", shortest(self.offset))
+    }
+}
+
+impl Mapped {
+    /// Reads a row of the table, with its name; it is one of `all`.
+    pub fn read(all: &[Combination], cells: &[&str]) -> Option<(String, Self)> {
+        let (keys, rest) = cells.split_at_checked(KEYS.len())?;
+        let [offset, predicted, measured, problem] = rest else { return None };
+        let offset: f64 = offset.parse().ok()?;
+        let known = KEYS.iter().zip(keys).filter(|(_, value)| !value.is_empty());
+        let words: String = known.map(|(key, value)| format!("{key}={value} ")).collect();
+        let name = format!("{words}offset={}", shortest(offset));
+        let combination = all.iter().find(|one| one.name() == name)?.clone();
+        let limit = match *problem {
+            "" => {
+                Ok(Limit { predicted: predicted.parse().ok()?, measured: measured.parse().ok()? })
+            }
+            problem => Err(problem.to_string()),
+        };
+        Some((name, Mapped { combination, limit }))
+    }
 }

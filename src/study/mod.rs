@@ -7,4 +7,5 @@ pub mod map;
 pub mod measured;
 pub mod pool;
 pub mod ranking;
+pub mod rows;
 pub mod trade;
