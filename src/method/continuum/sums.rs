@@ -56,10 +56,10 @@ pub fn internal_force<const D: usize>(
         shape.lines(p, |line| {
             let (along, across) = line.split(&pull);
             for (I, factor) in line.nodes() {
-                node.f[I] -= match D {
-                    1 => along * factor.slope,
-                    _ => along * factor.slope + across * factor.N,
-                };
+                node.f[I] -= along * factor.slope;
+                if D > 1 {
+                    node.f[I] -= across * factor.N;
+                }
             }
         });
     }

@@ -277,10 +277,9 @@ pub fn map_acceleration<const D: usize>(
 /// Errors: [`Breakdown::NotFinite`] with the first such particle.
 pub fn finite<const D: usize>(particle: &Particles<D>) -> Result<(), Breakdown> {
     for p in 0..particle.len() {
-        // 0 times a number is 0, and else NaN.
-        let (x, v, sigma) = (particle.x[p] * 0.0, particle.v[p] * 0.0, particle.sigma[p] * 0.0);
-        let nothing = (x + v).sum() + sigma.sum() + particle.rho[p] * 0.0;
-        if nothing == 0.0 && particle.rho[p] > 0.0 {
+        // What is no number makes the sum none.
+        let sum = (particle.x[p] + particle.v[p]).sum() + particle.sigma[p].sum();
+        if (sum + particle.rho[p]).is_finite() && particle.rho[p] > 0.0 {
             continue;
         }
         let finite = |list: &[f64]| list.iter().all(|number| number.is_finite());
@@ -290,8 +289,10 @@ pub fn finite<const D: usize>(particle: &Particles<D>) -> Result<(), Breakdown> 
             "velocity"
         } else if !finite(particle.sigma[p].as_slice()) {
             "stress"
-        } else {
+        } else if !(particle.rho[p].is_finite() && particle.rho[p] > 0.0) {
             "density"
+        } else {
+            continue; // only the sum was too large
         };
         return Err(Breakdown::NotFinite { particle: p, symbol });
     }
