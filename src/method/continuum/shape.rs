@@ -7,6 +7,7 @@
 
 use crate::method::cost::Cost;
 use nalgebra::{SMatrix, SVector};
+use std::ops::Range;
 
 // ANCHOR: shape
 /// The table holds N_Ip and ∇N_Ip for all particles p and the nodes I that each one sees.
@@ -247,23 +248,25 @@ impl<const D: usize> Shape<D> {
 #[derive(Clone, Copy)]
 pub struct Line<'a, const D: usize> {
     I: usize,
-    factors: &'a [Factor],
-    /// Π over the other axes of N.
+    /// N and slope along the first axis, for each node.
+    pub factors: &'a [Factor],
+    /// Π N over the other axes.
     pub share: f64,
-    pub across: SVector<f64, D>,
+    /// `share`, and the same with the slope in place of one N.
+    across: SVector<f64, D>,
 }
 
 impl<'a, const D: usize> Line<'a, D> {
-    /// Runs over the nodes as (I, N and slope along the first axis).
+    /// Gives the numbers I of the nodes: where the line is in a list of nodal values.
     #[inline(always)]
-    pub fn nodes(&self) -> impl Iterator<Item = (usize, &'a Factor)> + use<'a, D> {
-        (self.I..).zip(self.factors)
+    pub fn nodes(&self) -> Range<usize> {
+        self.I..self.I + self.factors.len()
     }
 
     /// Runs over the nodes as (I, N_Ip, ∇N_Ip).
     #[inline(always)]
     pub fn entries(self) -> impl Iterator<Item = (usize, f64, SVector<f64, D>)> + use<'a, D> {
-        self.nodes().map(move |(I, Factor { N, slope })| {
+        self.nodes().zip(self.factors).map(move |(I, Factor { N, slope })| {
             let along = |d| if d == 0 { slope } else { N };
             (I, self.share * N, SVector::from_fn(|d, _| self.across[d] * along(d)))
         })

@@ -20,9 +20,10 @@ pub fn mass_and_momentum<const D: usize>(
         let (m_p, v_p) = (particle.m[p], particle.v[p]);
         shape.lines(p, |line| {
             let m_line = m_p * line.share;
-            for (I, factor) in line.nodes() {
-                node.m[I] += m_line * factor.N;
-                node.p[I] += v_p * (m_line * factor.N);
+            let (m, p) = (&mut node.m[line.nodes()], &mut node.p[line.nodes()]);
+            for ((m_I, p_I), factor) in m.iter_mut().zip(p).zip(line.factors) {
+                *m_I += m_line * factor.N;
+                *p_I += v_p * (m_line * factor.N);
             }
         });
     }
@@ -36,8 +37,8 @@ pub fn momentum<const D: usize>(node: &mut Nodes<D>, particle: &Particles<D>, sh
         let (m_p, v_p) = (particle.m[p], particle.v[p]);
         shape.lines(p, |line| {
             let p_line = v_p * (m_p * line.share);
-            for (I, factor) in line.nodes() {
-                node.p[I] += p_line * factor.N;
+            for (p_I, factor) in node.p[line.nodes()].iter_mut().zip(line.factors) {
+                *p_I += p_line * factor.N;
             }
         });
     }
@@ -55,10 +56,10 @@ pub fn internal_force<const D: usize>(
         let pull = particle.sigma[p] * (particle.m[p] / particle.rho[p]);
         shape.lines(p, |line| {
             let (along, across) = line.split(&pull);
-            for (I, factor) in line.nodes() {
-                node.f[I] -= along * factor.slope;
+            for (f_I, factor) in node.f[line.nodes()].iter_mut().zip(line.factors) {
+                *f_I -= along * factor.slope;
                 if D > 1 {
-                    node.f[I] -= across * factor.N;
+                    *f_I -= across * factor.N;
                 }
             }
         });
@@ -138,8 +139,8 @@ pub fn interpolate<const D: usize>(
     let mut sum = SVector::zeros();
     shape.lines(p, |line| {
         let mut of_line = SVector::zeros();
-        for (I, factor) in line.nodes() {
-            of_line += q[I] * factor.N;
+        for (q_I, factor) in q[line.nodes()].iter().zip(line.factors) {
+            of_line += q_I * factor.N;
         }
         sum += of_line * line.share;
     });
