@@ -266,7 +266,7 @@ impl<'a, const D: usize> Line<'a, D> {
     /// Runs over the nodes as (I, N_Ip, ∇N_Ip).
     #[inline(always)]
     pub fn entries(self) -> impl Iterator<Item = (usize, f64, SVector<f64, D>)> + use<'a, D> {
-        self.nodes().zip(self.factors).map(move |(I, Factor { N, slope })| {
+        (self.I..).zip(self.factors).map(move |(I, Factor { N, slope })| {
             let along = |d| if d == 0 { slope } else { N };
             (I, self.share * N, SVector::from_fn(|d, _| self.across[d] * along(d)))
         })
