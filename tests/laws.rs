@@ -130,7 +130,7 @@ fn sums_velocity_gradient_of_affine_motion() {
 }
 
 /// A node of tiny mass sends no particle off, however near to a face of its cell the
-/// particle is: N_Ip / m_I is 1 / m_p at most, and f_I / m_I, which is not bounded, is still a
+/// particle is: N_Ip / m_I is 1 / m_p at most, and f_I / m_I, however large, is still a
 /// number, since N_Ip is 0 or not too small. One particle, from 1 down to 5e-324 cells above
 /// a corner of its cell, in 1D to 3D: what it gets is Σ f_I / m_p of the nodes with mass.
 #[test]

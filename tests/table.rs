@@ -74,8 +74,8 @@ fn table_of_products_is_a_table_of_lists() {
     }
 }
 
-/// A table of products is small: of local max-ent with γ = 0.8 in 3D, which sees up to 729
-/// nodes, below 1 kB for each particle; as a list it would take more than 20 times as much.
+/// A table of products is small: of local max-ent with γ = 0.8 in 3D, which sees some 280
+/// nodes here, below 1 kB for each particle; as a list it would take more than 20 times as much.
 #[test]
 fn table_is_small() {
     let State { particle, shape, .. } = tabulated_strip::<3>(&LME_WIDE);

@@ -27,7 +27,7 @@ use support::{Width, row_in_ball, row_in_box};
 /// max-ent `lambda` starts the search for each particle's λ h, and holds what was found.
 ///
 /// Errors: the first particle that cannot be served, [`Breakdown::LeftGrid`],
-/// [`Breakdown::NotFinite`] or [`Breakdown::NoBasis`].
+/// [`Breakdown::NotFinite`], [`Breakdown::ReachesBeyond`] or [`Breakdown::NoBasis`].
 /// Tests: `tests/basis.rs`.
 pub fn fill_from_grid<const D: usize>(
     shape: &mut Shape<D>,

@@ -1,5 +1,4 @@
-//! The sums of §3.3 carry quantities from particles to nodes and back; what they divide by is
-//! the lumped mass of (18).
+//! The sums of §3.3 carry quantities from particles to nodes and back.
 
 use super::law::outer;
 use super::loads::Loads;

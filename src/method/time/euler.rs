@@ -3,10 +3,8 @@
 //!
 //! The nodal momentum is advanced first, and the particles move with the
 //! advanced one. (With the old momentum, as (21) is printed, no step is
-//! stable.) Then (20)-(21) and (22)-(23) are the same sums; they differ in what
-//! is divided by m_I. The corrected form divides N_Ip, which no tiny mass can
-//! blow up, and takes the strain from the momentum of the particles, mapped
-//! anew.
+//! stable.) Then (20)-(21) and (22)-(23) are the same sums. The corrected form
+//! takes the strain from the momentum of the particles, mapped anew.
 
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
