@@ -244,9 +244,10 @@ pub fn gamma(arguments: &RowArguments, dir: &Path, jobs: u16) -> Result<(), Faul
     } else {
         spare_all(&arguments.merge, dir, "gamma.csv")?;
         let study = Study { scene: gammas::digest()?, columns: &gammas::columns(), names: &names };
-        study.merged(&arguments.merge, AtGamma::read)?
+        let rows = study.merged(&arguments.merge, AtGamma::read)?;
+        prepare(dir)?;
+        rows
     };
-    prepare(dir)?;
     let mut files = vec![("gamma.csv".to_string(), gammas::table(&rows)?)];
     for name in gammas::Effect::default().named().map(|(name, _)| name) {
         let words = name.replace('_', " ");
@@ -297,9 +298,11 @@ pub fn stability(
     } else {
         spare_all(&arguments.merge, dir, "stability.csv")?;
         let study = Study { scene: template.digest()?, columns: &map::columns(), names: &names };
-        study.merged(&arguments.merge, |cells| map::Mapped::read(&combinations, cells))?
+        let rows =
+            study.merged(&arguments.merge, |cells| map::Mapped::read(&combinations, cells))?;
+        prepare(dir)?;
+        rows
     };
-    prepare(dir)?;
     write_all(dir, &[("stability.csv".to_string(), map::table(&rows)?)], &[])?;
     print_bytes(limits(dir, &rows).as_bytes())
 }

@@ -4,6 +4,7 @@
 use super::configuration::{Configuration, Template};
 use super::measured::Measured;
 use super::pool;
+use super::rows::is_whole;
 use crate::run::table::{csv, shortest};
 use crate::scene::fault::Fault;
 use std::fs;
@@ -145,9 +146,7 @@ fn lines(path: &Path, scene: &str) -> Result<Vec<(u64, Option<TimedRun>)>, Fault
     for record in reader.records() {
         let record = record.map_err(|error| fault(error.into()))?;
         let line = record.position().map_or(0, |position| position.line());
-        // A last line without its end may lack the last digits of its last number.
-        let ends = record.position().map_or(0, |position| position.byte()) as usize;
-        let whole = record.len() == header.len() && text[ends..].contains('\n');
+        let whole = is_whole(&record, &text, header.len());
         if whole && &record[0] != scene {
             let allowed = "a log of this scene, or another --out";
             return Err(refuse("belongs to another scene", allowed));

@@ -139,10 +139,7 @@ pub fn columns() -> Vec<&'static str> {
 impl Combination {
     /// Gives the name of its row: its `KEY=VALUE`, and the offset.
     pub fn name(&self) -> String {
-        let keys = KEYS.iter().map(|key| (key, self.configuration.value(key)));
-        let known = keys.filter(|(_, value)| !value.is_empty());
-        let words: String = known.map(|(key, value)| format!("{key}={value} ")).collect();
-        format!("{words}offset={}", shortest(self.offset))
+        row_name(KEYS.map(|key| self.configuration.value(key)), self.offset)
     }
 }
 
@@ -152,9 +149,7 @@ impl Mapped {
         let (keys, rest) = cells.split_at_checked(KEYS.len())?;
         let [offset, predicted, measured, problem] = rest else { return None };
         let offset: f64 = offset.parse().ok()?;
-        let known = KEYS.iter().zip(keys).filter(|(_, value)| !value.is_empty());
-        let words: String = known.map(|(key, value)| format!("{key}={value} ")).collect();
-        let name = format!("{words}offset={}", shortest(offset));
+        let name = row_name(keys.iter().copied(), offset);
         let combination = all.iter().find(|one| one.name() == name)?.clone();
         let limit = match *problem {
             "" => {
@@ -164,4 +159,11 @@ impl Mapped {
         };
         Some((name, Mapped { combination, limit }))
     }
+}
+
+/// Names a row by the values of all keys, in their order, and the offset.
+fn row_name<'a>(values: impl IntoIterator<Item = &'a str>, offset: f64) -> String {
+    let known = KEYS.iter().zip(values).filter(|(_, value)| !value.is_empty());
+    let words: String = known.map(|(key, value)| format!("{key}={value} ")).collect();
+    format!("{words}offset={}", shortest(offset))
 }

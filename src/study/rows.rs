@@ -85,14 +85,13 @@ impl Study<'_> {
         for record in reader.records() {
             let record = record.map_err(|error| unread(error.into()))?;
             let line = record.position().map_or(0, |position| position.line());
-            let from = record.position().map_or(0, |position| position.byte()) as usize;
             if line == 1 {
                 if record.iter().ne(["scene"].iter().chain(self.columns).copied()) {
                     return Err(fault(path, 1, "these are other columns"));
                 }
                 continue;
             }
-            let whole = record.len() == self.columns.len() + 1 && text[from..].contains('\n');
+            let whole = is_whole(&record, &text, self.columns.len() + 1);
             if whole && record[0] != self.scene {
                 return Err(fault(path, line, "this row belongs to another scene"));
             }
@@ -104,6 +103,13 @@ impl Study<'_> {
             false => Ok(lines),
         }
     }
+}
+
+/// Says whether a record of `text` has all columns and the end of its line: a last line without
+/// that may lack the last digits of its last number.
+pub fn is_whole(record: &csv::StringRecord, text: &str, columns: usize) -> bool {
+    let from = record.position().map_or(0, |position| position.byte()) as usize;
+    record.len() == columns && text[from..].contains('\n')
 }
 
 fn fault(path: &Path, line: u64, problem: &str) -> Fault {
