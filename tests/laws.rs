@@ -3,7 +3,8 @@
 use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::method::basis::Basis;
-use lme_mpm::method::continuum::law::{LinearElastic, density, symmetric_part};
+use lme_mpm::method::choice::Law;
+use lme_mpm::method::continuum::law::{Elastic, density, symmetric_part};
 use lme_mpm::method::continuum::mass::MassMatrix;
 use lme_mpm::method::continuum::state::{Nodes, Particles};
 use lme_mpm::method::continuum::sums;
@@ -18,7 +19,7 @@ use nalgebra::{Matrix1, Matrix2, Matrix3, SMatrix, SVector, Vector2};
 #[test]
 fn law_plane_strain() {
     let (E, nu) = (210e9, 0.3);
-    let law = LinearElastic::new(E, nu);
+    let law = Elastic::new(Law::Rate, E, nu);
     let eps = Matrix2::new(1e-3, 2e-4, 2e-4, -4e-4);
     let sigma = law.stress_increment(&eps);
     let factor = E / ((1.0 + nu) * (1.0 - 2.0 * nu));
@@ -39,18 +40,18 @@ fn law_plane_strain() {
 /// In 1D the modulus is E(1−ν)/((1+ν)(1−2ν)), and E for ν = 0.
 #[test]
 fn law_uniaxial_strain() {
-    let modulus = |nu| LinearElastic::new(200e9, nu).p_wave_modulus();
+    let modulus = |nu| Elastic::new(Law::Rate, 200e9, nu).p_wave_modulus();
     assert_eq!(modulus(0.0), 200e9);
     assert_relative_eq!(modulus(0.25), 200e9 * 0.75 / (1.25 * 0.5), max_relative = 1e-15);
     let eps = Matrix1::new(1e-3);
-    assert_eq!(LinearElastic::new(200e9, 0.0).stress_increment(&eps)[0], 200e6);
+    assert_eq!(Elastic::new(Law::Rate, 200e9, 0.0).stress_increment(&eps)[0], 200e6);
 }
 
 /// ½ σ : D⁻¹ : σ of σ = D : ε is ½ σ : ε to 1e-14, in every dimension.
 #[test]
 fn law_energy_is_half_stress_times_strain() {
     fn check<const D: usize>(eps: SMatrix<f64, D, D>) {
-        let law = LinearElastic::new(7.0, 0.3);
+        let law = Elastic::new(Law::Rate, 7.0, 0.3);
         let sigma = law.stress_increment(&eps);
         let half = 0.5 * sigma.dot(&eps);
         assert_relative_eq!(law.energy_density(&sigma), half, max_relative = 1e-14);

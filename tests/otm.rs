@@ -26,7 +26,7 @@ fn scatter<const D: usize>(x: &SVector<f64, D>, size: f64) -> SVector<f64, D> {
 #[test]
 fn otm_affine_patch_on_scattered_nodes() {
     fn check<const D: usize>(gradient: SMatrix<f64, D, D>) {
-        let scene = block(D, &[]);
+        let scene = block(D, &["body.law=neo-hookean"]); // which carries F
         let (model, mut state) = at_start::<D>(&scene);
         for x in state.node.x.iter_mut().chain(&mut state.particle.x) {
             *x = scatter(x, 0.04);
@@ -48,7 +48,7 @@ fn otm_affine_patch_on_scattered_nodes() {
             }
             otm::move_nodes(node, 1.0);
             otm::move_particles(particle, node, shape, 1.0);
-            otm::deform(particle, node, shape, &model, 1.0).unwrap();
+            otm::deform_particles(particle, node, shape, &model, 1.0).unwrap();
             otm::tabulate_again(&mut state, &model).unwrap();
             whole = (SMatrix::identity() + turned(step)) * whole;
             J *= law::increment(&turned(step)).1;
@@ -215,7 +215,7 @@ fn otm_inversion_is_named() {
         matches!(stopped.broken.breakdown, Breakdown::Inverted { .. } | Breakdown::NoBasis { .. });
     assert!(named, "{}", stopped.broken.breakdown);
     let mut particle = Particles::at_rest(vec![Vector1::new(0.5)], 1.0);
-    particle.F = vec![SMatrix::identity()];
+    particle.G = vec![SMatrix::zeros()];
     let mut node = Nodes::<1>::blank(2);
     node.m = vec![1.0; 2];
     node.v = [1.0, 0.0].map(Vector1::new).to_vec();
@@ -225,6 +225,6 @@ fn otm_inversion_is_named() {
     }
     shape.end_list();
     let (model, _) = at_start::<1>(&scene);
-    let stopped = otm::deform(&mut particle, &node, &shape, &model, 1.0).unwrap_err();
+    let stopped = otm::deform_particles(&mut particle, &node, &shape, &model, 1.0).unwrap_err();
     assert_eq!(stopped, Breakdown::Inverted { particle: 0, strain: -1.0 });
 }

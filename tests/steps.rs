@@ -12,8 +12,8 @@ use crate::support::*;
 use approx::assert_relative_eq;
 use lme_mpm::method::basis::Basis;
 use lme_mpm::method::breakdown::Breakdown;
-use lme_mpm::method::choice::{Integrator, Mass, Method};
-use lme_mpm::method::continuum::law::LinearElastic;
+use lme_mpm::method::choice::{Integrator, Law, Mass, Method};
+use lme_mpm::method::continuum::law::Elastic;
 use lme_mpm::method::continuum::loads::{BodyForce, Loads, Traction};
 use lme_mpm::method::continuum::mass::{ConsistentMass, MassMatrix};
 use lme_mpm::method::continuum::shape::Shape;
@@ -21,7 +21,7 @@ use lme_mpm::method::continuum::state::{Nodes, Particles};
 use lme_mpm::method::continuum::sums;
 use lme_mpm::method::grid::Grid;
 use lme_mpm::method::model::{Model, State};
-use lme_mpm::method::reading::StepEight;
+use lme_mpm::method::reading::{Kinematics, StepEight};
 use lme_mpm::method::time::generalized_alpha::{self, Parameters};
 use lme_mpm::method::time::steps;
 use nalgebra::Vector1;
@@ -166,7 +166,7 @@ fn step_6_update_density() {
 fn step_6_update_stress() {
     let (mut particle, _, _) = setup();
     particle.d_eps = [0.25, -0.5, 1.0].map(Vector1::new).to_vec();
-    steps::update_stress(&mut particle, &LinearElastic::new(100.0, 0.0));
+    steps::update_stress(&mut particle, &Elastic::new(Law::Rate, 100.0, 0.0));
     assert_eq!(scalars(&particle.sigma), [33.0, -34.0, 96.0]);
 }
 
@@ -196,11 +196,12 @@ fn model(fixed: &[(usize, usize)], loads: Option<Loads<1>>) -> Model<1> {
     Model {
         grid: Grid::over([2.0], [2], [[0, 0]]),
         basis: Basis::Linear,
-        law: LinearElastic::new(100.0, 0.0),
+        law: Elastic::new(Law::Rate, 100.0, 0.0),
         fixed: fixed.to_vec(),
         loads,
         mass: Mass::Lumped,
         method: Method::Mpm(Integrator::CorrectedEuler),
+        kinematics: Kinematics::AsPrinted,
         dt: DT,
         steps: 1,
     }

@@ -37,6 +37,27 @@ impl Integrator {
     }
 }
 
+/// A law gives the stress of the material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// (3), σ̇ = D : ε̇, which is not objective: a rotation does not turn the stress.
+    Rate,
+    /// Neo-Hookean, from the deformation gradient F.
+    NeoHookean,
+    /// Hencky's, from the logarithmic strain ½ ln(F Fᵀ).
+    Hencky,
+}
+
+impl Law {
+    /// Says whether the stress follows from F, which the particles then carry.
+    pub fn is_hyperelastic(&self) -> bool {
+        match self {
+            Law::Rate => false,
+            Law::NeoHookean | Law::Hencky => true,
+        }
+    }
+}
+
 /// The nodes have one of two mass matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mass {

@@ -1,8 +1,8 @@
 //! Measures a run (§6): the error (39), energy and momentum.
 
-use crate::method::continuum::law::LinearElastic;
+use crate::method::continuum::law::{Elastic, volume_change};
 use crate::method::continuum::state::{Carriers, Particles};
-use nalgebra::{SVector, Vector3};
+use nalgebra::{SMatrix, SVector, Vector3};
 
 // ANCHOR: rms
 /// (39), with the square that the paper's print lacks, is the root of the mean square:
@@ -62,13 +62,21 @@ pub fn observed_order(h: &[f64], error: &[f64]) -> Order {
 // ANCHOR_END: observed_order
 
 // ANCHOR: energy
-/// Gives the strain energy of particle p, ½ σ_p : D⁻¹ : σ_p m_p / ρ_p (J).
+/// Gives the strain energy of particle p (J): ½ σ_p : D⁻¹ : σ_p m_p / ρ_p with the rate law,
+/// else W(F_p) m_p / (ρ_p J_p), where ρ_p J_p is the density at t = 0.
 pub fn strain_energy_of<const D: usize>(
     particle: &Particles<D>,
-    law: &LinearElastic,
+    law: &Elastic,
     p: usize,
 ) -> f64 {
-    law.energy_density(&particle.sigma[p]) * (particle.m[p] / particle.rho[p])
+    let volume = particle.m[p] / particle.rho[p];
+    match particle.F.get(p) {
+        None => law.energy_density(&particle.sigma[p]) * volume,
+        Some(F_p) => {
+            let J = 1.0 + volume_change(&(F_p - SMatrix::identity()));
+            law.energy_of(F_p) * (volume / J)
+        }
+    }
 }
 
 /// Sums ½ m |v|² (J) over particles, or over the nodes of OTM.
@@ -77,7 +85,7 @@ pub fn kinetic_energy<const D: usize>(Carriers { m, v, .. }: &Carriers<D>) -> f6
 }
 
 /// Sums the strain energy over all particles (J).
-pub fn strain_energy<const D: usize>(particle: &Particles<D>, law: &LinearElastic) -> f64 {
+pub fn strain_energy<const D: usize>(particle: &Particles<D>, law: &Elastic) -> f64 {
     total(particle.len(), 0.0, |p| strain_energy_of(particle, law, p))
 }
 // ANCHOR_END: energy

@@ -2,13 +2,14 @@
 
 use super::basis::{Basis, Scratch};
 use super::choice::{Integrator, Mass, Method};
-use super::continuum::law::LinearElastic;
+use super::continuum::law::Elastic;
 use super::continuum::loads::Loads;
 use super::continuum::mass::{ConsistentMass, MassMatrix};
 use super::continuum::shape::Shape;
 use super::continuum::state::{Carriers, Multiplier, Nodes, Particles};
 use super::cost::Cost;
 use super::grid::Grid;
+use super::reading::Kinematics;
 use nalgebra::{SMatrix, SVector};
 
 /// Fixed components of nodes are pairs (I, i).
@@ -19,12 +20,14 @@ pub type Fixed = [(usize, usize)];
 pub struct Model<const D: usize> {
     pub grid: Grid<D>,
     pub basis: Basis,
-    pub law: LinearElastic,
+    pub law: Elastic,
     /// Node I has zero velocity component i.
     pub fixed: Vec<(usize, usize)>,
     pub loads: Option<Loads<D>>,
     pub method: Method,
     pub mass: Mass,
+    /// Which map the strain of MPM is taken from; OTM has one.
+    pub kinematics: Kinematics,
     /// Δt (s).
     pub dt: f64,
     /// N_t, the number of time steps.
@@ -32,6 +35,15 @@ pub struct Model<const D: usize> {
 }
 
 impl<const D: usize> Model<D> {
+    /// Says whether particles keep G of a step, which the printed rate law has no need of.
+    pub fn keeps_gradient(&self) -> bool {
+        let printed = self.kinematics == Kinematics::AsPrinted;
+        match self.method {
+            Method::Mpm(_) => !printed || self.law.law.is_hyperelastic(),
+            Method::Otm => true,
+        }
+    }
+
     /// Counts the bytes of state that one particle carries in this model.
     pub fn bytes_per_particle(&self) -> usize {
         let (vector, matrix) = (size_of::<SVector<f64, D>>(), size_of::<SMatrix<f64, D, D>>());
@@ -39,9 +51,11 @@ impl<const D: usize> Model<D> {
         let of_method = match self.method {
             Method::Mpm(integrator) if integrator.carries_acceleration() => vector, // a_p
             Method::Mpm(_) => 0,
-            Method::Otm => matrix, // F_p
+            Method::Otm => 0,
         };
-        Particles::<D>::BYTES + of_basis + of_method
+        let of_map = if self.keeps_gradient() { matrix } else { 0 }; // G_p
+        let of_law = if self.law.law.is_hyperelastic() { matrix } else { 0 }; // F_p
+        Particles::<D>::BYTES + of_basis + of_method + of_map + of_law
     }
 }
 
@@ -80,9 +94,14 @@ impl<const D: usize> State<D> {
             }
             Method::Mpm(_) => {}
             Method::Otm => {
-                particle.F = vec![SMatrix::identity(); particles];
                 node.x = x;
             }
+        }
+        if model.keeps_gradient() {
+            particle.G = vec![SMatrix::zeros(); particles];
+        }
+        if model.law.law.is_hyperelastic() && particle.F.is_empty() {
+            particle.F = vec![SMatrix::identity(); particles];
         }
         if model.basis.has_multiplier() {
             particle.lambda = vec![Multiplier::default(); particles];

@@ -45,6 +45,27 @@ pub enum StepEight {
     AsPrinted,
 }
 
+/// The strain of a time step can be taken from two velocity gradients.
+///
+/// As printed, steps 3 to 5 take the velocity of k+½ with the ∇N of k+1, and (17) divides by
+/// 1 + tr Δε. Neither is the deformation that moved the particle from x_k to x_{k+1}: at
+/// finite strain stress and density are of first order in Δt, with an error of the same sign
+/// in every step. While strains are small this does not show.
+///
+/// Tests: `finite_strain_*` in `tests/finite.rs`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Kinematics {
+    /// Δε = Δt sym ∇v and ρ ← ρ / (1 + tr Δε), by the velocity and the table that the scheme
+    /// has at hand.
+    #[default]
+    AsPrinted,
+    /// The increment f = 1 + G is the gradient of the map x ↦ x + Σ_I N_I(x) u_I that moves
+    /// the particles in this step: G = Σ_I u_I ⊗ ∇N_Ip, with the N_I and u_I which move x_p.
+    /// ρ ← ρ / det f, and of second order in Δt. The strain is then that of the nodes' own
+    /// velocity, not mapped anew, so every scheme has the limit of Δt of stress-last.
+    Consistent,
+}
+
 /// Forward Euler updates the stress at one of three points, which the paper leaves open.
 ///
 /// On particles that do not leave their places, `First` and `ModifiedLast` are

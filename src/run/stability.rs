@@ -17,7 +17,7 @@ use crate::method::continuum::law::symmetric_part;
 use crate::method::continuum::sums;
 use crate::method::measure;
 use crate::method::model::{Model, State};
-use crate::method::reading::StressUpdate;
+use crate::method::reading::{Kinematics, StressUpdate};
 use crate::method::time::generalized_alpha::Parameters;
 use crate::method::time::{self, otm, steps};
 use crate::scene::Scene;
@@ -53,13 +53,14 @@ impl OfScheme {
             return OfScheme::One;
         };
         match integrator {
-            Integrator::Newmark(_) | Integrator::CorrectedEuler => OfScheme::Filtered,
-            Integrator::ForwardEuler(StressUpdate::Last) => OfScheme::Last,
-            Integrator::ForwardEuler(_) => OfScheme::Filtered,
             // l and p have the factor 1 − s: 2 for every s < 1, but 1 for s = 1. With
             // the consistent mass matrix both occur, and 2 is on the safe side.
             Integrator::GeneralizedAlpha { rho_b: 1.0 } => OfScheme::Constant(2.0),
             Integrator::GeneralizedAlpha { rho_b } => OfScheme::Alpha(Parameters::new(rho_b)),
+            _ if model.kinematics == Kinematics::Consistent => OfScheme::Last,
+            Integrator::Newmark(_) | Integrator::CorrectedEuler => OfScheme::Filtered,
+            Integrator::ForwardEuler(StressUpdate::Last) => OfScheme::Last,
+            Integrator::ForwardEuler(_) => OfScheme::Filtered,
         }
     }
 

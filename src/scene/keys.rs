@@ -72,11 +72,17 @@ pub const KEYS: &[Key] = &[
     must("title", Text, "What summary and pictures are headed with"),
     must("method", Choice(&["mpm", "otm"]), "Particles on a grid, or on nodes that move"),
     must("mass", Choice(&["lumped", "consistent"]), "The mass matrix of the nodes"),
-    must("body", Table, "A box of linear elastic material"),
+    must("body", Table, "A box of elastic material"),
     must("body.length", PerAxis(positive("m")), "The size of the box, L in 1D")
         .besides("their number is the dimension, 1 to 3"),
     may("body.origin", PerAxis(any("m")), Without::Number(0.0), "Its lower corner"),
     must("body.density", One(positive("kg/m³")), "ρ at the start"),
+    may(
+        "body.law",
+        Choice(&["rate", "neo-hookean", "hencky"]),
+        Without::Word("rate"),
+        "The stress by its rate, (3), or from the deformation gradient",
+    ),
     must("body.youngs_modulus", One(positive("Pa")), "E, Young's modulus"),
     must("body.poisson_ratio", One(between(Excluded(-1.0), Excluded(0.5))), "ν, Poisson's ratio"),
     may("body.ball", List, Without::Says("all of the box"), "Discs or balls of material")
@@ -151,6 +157,13 @@ pub const KEYS: &[Key] = &[
         "ρ_b, the spectral radius at the bifurcation",
     )
     .with("time.integrator", "generalized-alpha"),
+    may(
+        "time.kinematics",
+        Choice(&["as-printed", "consistent"]),
+        Without::Word("as-printed"),
+        "The strain as printed, or that of the map which moves the particles",
+    )
+    .besides("not with the method \"otm\", whose strain is always that of the map"),
     may(
         "time.cfl",
         One(positive("")),

@@ -1,8 +1,10 @@
 //! A scene is made of these parts, checked.
 
 use crate::method::basis::Basis;
-use crate::method::choice::{Mass, Method};
+use crate::method::choice::{Law, Mass, Method};
+use crate::method::continuum::law::Elastic;
 use crate::method::exact::riemann::End;
+use crate::method::reading::Kinematics;
 
 /// A scene is checked: every value is in range and every list has one entry for each axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +14,7 @@ pub struct Scene {
     pub title: String,
     pub method: Method,
     pub mass: Mass,
+    pub kinematics: Kinematics,
     pub body: Body,
     pub grid: GridSpec,
     pub basis: Basis,
@@ -28,7 +31,7 @@ pub struct Scene {
     pub vtk: bool,
 }
 
-/// The body is a box of linear elastic material.
+/// The body is a box of elastic material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// L along each axis (m).
@@ -37,12 +40,20 @@ pub struct Body {
     pub origin: Vec<f64>,
     /// ρ at the start (kg/m³).
     pub density: f64,
+    pub law: Law,
     /// E (Pa).
     pub youngs_modulus: f64,
     /// ν (–).
     pub poisson_ratio: f64,
     /// The material is inside these; without any it fills the box.
     pub balls: Vec<Ball>,
+}
+
+impl Body {
+    /// Gives the material with its moduli.
+    pub fn elastic(&self) -> Elastic {
+        Elastic::new(self.law, self.youngs_modulus, self.poisson_ratio)
+    }
 }
 
 /// A ball holds the points within a radius: in 2D it is a disc.

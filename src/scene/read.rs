@@ -6,11 +6,15 @@ use super::loading::{body_force, traction};
 use super::motion::motion;
 use super::parts::*;
 use super::probes::probes;
-use super::scheme::{basis, integrator, otm, time};
+use super::scheme::{basis, integrator, kinematics, otm, time};
 use super::sizes::wave_speed;
 use super::source::Source;
 use super::values::{Values, counted};
-use crate::method::choice::{Mass, Method};
+use crate::method::choice::{Law, Mass, Method};
+
+/// A body has one of these laws.
+const LAWS: [(&str, Law); 3] =
+    [("rate", Law::Rate), ("neo-hookean", Law::NeoHookean), ("hencky", Law::Hencky)];
 
 /// A declared scene knows the places where its values were written.
 pub struct Declared {
@@ -77,6 +81,7 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         title: values.word("title")?.to_string(),
         method,
         mass,
+        kinematics: kinematics(values)?,
         body,
         grid,
         basis,
@@ -109,6 +114,7 @@ fn body(values: &Values) -> Result<Body, Box<SceneError>> {
         length: values.axes("body.length")?,
         origin: values.axes("body.origin")?,
         density: values.number("body.density")?,
+        law: values.choose("body.law", &LAWS)?,
         youngs_modulus: values.number("body.youngs_modulus")?,
         poisson_ratio: values.number("body.poisson_ratio")?,
         balls: Vec::new(),

@@ -5,7 +5,7 @@ use super::parts::{GridSpec, Time};
 use super::values::Values;
 use crate::method::basis::{Basis, Support};
 use crate::method::choice::Integrator;
-use crate::method::reading::{StepEight, StressUpdate};
+use crate::method::reading::{Kinematics, StepEight, StressUpdate};
 
 /// Reads the `time` table but for the integrator.
 pub fn time(values: &Values) -> Result<Time, Box<SceneError>> {
@@ -51,6 +51,13 @@ pub fn integrator(values: &Values) -> Result<Integrator, Box<SceneError>> {
     }
 }
 
+/// Reads which map the strain is taken from.
+pub fn kinematics(values: &Values) -> Result<Kinematics, Box<SceneError>> {
+    let readings =
+        [("as-printed", Kinematics::AsPrinted), ("consistent", Kinematics::Consistent)];
+    values.choose("time.kinematics", &readings)
+}
+
 /// Reads the basis with what it needs.
 pub fn basis(values: &Values, grid: &GridSpec) -> Result<Basis, Box<SceneError>> {
     let half = |d: usize| grid.particles_per_cell.get(d).map_or(0.5, |n| 0.5 / *n as f64);
@@ -91,6 +98,9 @@ pub fn otm(values: &Values) -> Result<(), Box<SceneError>> {
     }
     if values.has("time.reading") {
         return refuse("time.reading", "there is no step 8 to read", "no such key");
+    }
+    if values.has("time.kinematics") {
+        return refuse("time.kinematics", "the strain is always that of the map", "no such key");
     }
     if values.word("mass")? != "lumped" {
         return refuse("mass", "the nodal mass is lumped", "\"lumped\"");

@@ -1,12 +1,10 @@
 //! Counts what a scene amounts to before anything is built: particles, nodes, pairs, steps.
 
 use super::parts::{Body, Scene};
-use crate::method::continuum::law::LinearElastic;
 
 /// Gives c = √((λ + 2μ) / ρ) (m/s), the speed of a plane wave, (46) in the bar.
 pub fn wave_speed(body: &Body) -> f64 {
-    let law = LinearElastic::new(body.youngs_modulus, body.poisson_ratio);
-    libm::sqrt(law.p_wave_modulus() / body.density)
+    libm::sqrt(body.elastic().p_wave_modulus() / body.density)
 }
 
 impl Scene {

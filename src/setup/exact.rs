@@ -1,6 +1,5 @@
 //! Says which exact solution a scene has.
 
-use crate::method::continuum::law::LinearElastic;
 use crate::method::exact::Exact;
 use crate::method::exact::forced::{Forced, Load};
 use crate::method::exact::manufactured::Manufactured;
@@ -17,9 +16,8 @@ pub fn exact(scene: &Scene) -> Result<Exact, Fault> {
         return Err(Fault::NoExact { why: "it has more than one dimension" });
     }
     let ends = [0, 1].map(|upper: usize| scene.boundary[0][upper].end());
-    let law = LinearElastic::new(scene.body.youngs_modulus, scene.body.poisson_ratio);
     let (length, density, modulus) =
-        (scene.body.length[0], scene.body.density, law.p_wave_modulus());
+        (scene.body.length[0], scene.body.density, scene.body.elastic().p_wave_modulus());
     let c = wave_speed(&scene.body);
     let mut thrown = Bar { length, density, modulus, ends, patches: Vec::new() };
     let mut vibration = None;

@@ -6,7 +6,6 @@ pub mod lattice;
 pub use exact::exact;
 
 use crate::method::choice::Method;
-use crate::method::continuum::law::LinearElastic;
 use crate::method::continuum::state::Particles;
 use crate::method::grid::Grid;
 use crate::method::model::{Model, State};
@@ -31,9 +30,10 @@ pub fn model<const D: usize>(scene: &Scene) -> Model<D> {
         fixed,
         grid,
         basis: scene.basis,
-        law: LinearElastic::new(scene.body.youngs_modulus, scene.body.poisson_ratio),
+        law: scene.body.elastic(),
         loads: lattice::loads(scene, &places),
         method: scene.method,
+        kinematics: scene.kinematics,
         mass: scene.mass,
         dt: scene.time.end / steps,
         steps: steps as usize,

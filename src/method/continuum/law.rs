@@ -1,6 +1,8 @@
 //! These laws hold at a point, without any loop over particles or nodes: compatibility (2),
-//! linear elasticity in rate form (3), and conservation of mass (17).
+//! linear elasticity in rate form (3), and conservation of mass (17). What gives the stress from
+//! the deformation gradient instead stands in [`super::hyperelastic`].
 
+use crate::method::choice::Law;
 use nalgebra::{SMatrix, SVector};
 
 /// Makes the matrix a ⊗ b of the entries a_i b_j.
@@ -23,24 +25,27 @@ pub fn symmetric_part<const D: usize>(grad_v: &SMatrix<f64, D, D>) -> SMatrix<f6
 // ANCHOR_END: strain_rate
 
 // ANCHOR: elastic
-/// The elastic law is the isotropic elasticity tensor D of (3), by its Lamé moduli.
+/// An elastic material has the isotropic elasticity tensor D of (3), by its Lamé moduli, and one
+/// of the laws that are (3) while strains and rotations are small.
 ///
 /// With D = 2 this is plane strain. With D = 1 it is uniaxial *strain*: the
 /// modulus is λ + 2μ, which for ν = 0 is Young's modulus E, the modulus of a
 /// slender bar. A bar with ν ≠ 0 would need uniaxial stress instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinearElastic {
+pub struct Elastic {
+    pub law: Law,
     /// λ = E ν / ((1 + ν)(1 − 2ν)) (Pa).
     pub lambda: f64,
     /// μ = E / (2 (1 + ν)) (Pa).
     pub mu: f64,
 }
 
-impl LinearElastic {
-    /// Makes the law from Young's modulus E > 0 (Pa) and Poisson's ratio −1 < ν < ½ (–).
-    pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Self {
+impl Elastic {
+    /// Makes the material from Young's modulus E > 0 (Pa) and Poisson's ratio −1 < ν < ½ (–).
+    pub fn new(law: Law, youngs_modulus: f64, poisson_ratio: f64) -> Self {
         let (e, nu) = (youngs_modulus, poisson_ratio);
-        LinearElastic {
+        Elastic {
+            law,
             lambda: e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
             mu: e / (2.0 * (1.0 + nu)),
         }
@@ -79,17 +84,35 @@ impl LinearElastic {
 /// Gives f = 1 + G and det f of a displacement gradient G of one step (–).
 pub fn increment<const D: usize>(G: &SMatrix<f64, D, D>) -> (SMatrix<f64, D, D>, f64) {
     let f = SMatrix::<f64, D, D>::identity() + G;
+    let J = determinant(&f);
+    (f, J)
+}
+
+/// Gives det A, by its first row.
+fn determinant<const D: usize>(A: &SMatrix<f64, D, D>) -> f64 {
     let minor =
-        |i: usize, j: usize, k: usize, l: usize| f[(i, k)] * f[(j, l)] - f[(i, l)] * f[(j, k)];
-    let J = match D {
-        1 => f[(0, 0)],
+        |i: usize, j: usize, k: usize, l: usize| A[(i, k)] * A[(j, l)] - A[(i, l)] * A[(j, k)];
+    match D {
+        1 => A[(0, 0)],
         2 => minor(0, 1, 0, 1),
         _ => {
-            f[(0, 0)] * minor(1, 2, 1, 2) - f[(0, 1)] * minor(1, 2, 0, 2)
-                + f[(0, 2)] * minor(1, 2, 0, 1)
+            A[(0, 0)] * minor(1, 2, 1, 2) - A[(0, 1)] * minor(1, 2, 0, 2)
+                + A[(0, 2)] * minor(1, 2, 0, 1)
         }
-    };
-    (f, J)
+    }
+}
+
+/// Gives det(1 + H) − 1 of a displacement gradient H (–), with all the digits of a small one:
+/// tr H and the minors of H.
+pub fn volume_change<const D: usize>(H: &SMatrix<f64, D, D>) -> f64 {
+    let minor = |i: usize, j: usize| H[(i, i)] * H[(j, j)] - H[(i, j)] * H[(j, i)];
+    match D {
+        1 => H[(0, 0)],
+        2 => H.trace() + minor(0, 1),
+        _ => {
+            H.trace() + (minor(0, 1) + minor(1, 2) + minor(0, 2)) + determinant(H)
+        }
+    }
 }
 
 /// Gives Δε = sym(G (1 + G/2)⁻¹), the strain increment at the middle of a step of

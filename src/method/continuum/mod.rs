@@ -2,6 +2,7 @@
 //! the pointwise laws, the table of shape functions, and the sums that move quantities between
 //! the two.
 
+pub mod hyperelastic;
 pub mod law;
 pub mod loads;
 pub mod mass;

@@ -28,7 +28,9 @@ pub struct Particles<const D: usize> {
     pub lambda: Vec<Multiplier<D>>,
     /// a_p, acceleration (m/s²); of Newmark's method and generalized-α only.
     pub a: Vec<SVector<f64, D>>,
-    /// F_p, deformation gradient (–); of OTM only.
+    /// G_p, the gradient of a step's displacement (–); where more is needed than Δε_p.
+    pub G: Vec<SMatrix<f64, D, D>>,
+    /// F_p, deformation gradient (–); of hyperelastic laws only.
     pub F: Vec<SMatrix<f64, D, D>>,
 }
 // ANCHOR_END: particles
@@ -109,6 +111,7 @@ impl<const D: usize> Particles<D> {
             d_eps: vec![SMatrix::zeros(); n],
             lambda: Vec::new(),
             a: Vec::new(),
+            G: Vec::new(),
             F: Vec::new(),
         }
     }

@@ -97,33 +97,44 @@ pub fn external_force<const D: usize>(
 // ANCHOR_END: external_force
 
 // ANCHOR: velocity_gradient
-/// Gives the gradient inside (16), ∇v at particle p: Σ_I (v_I − v_0) ⊗ ∇N_Ip  (1/s).
-///
-/// v_0 is the velocity of the first of the particle's nodes. It may be taken
-/// off because Σ_I ∇N_Ip = 0; then nodes that move alike give exactly zero,
-/// and a fast body loses no digits of its strain. A node without mass has no
-/// velocity: it moves with v_0.
+/// Gives the gradient inside (16), ∇v at particle p: Σ_I v_I ⊗ ∇N_Ip  (1/s).
 #[inline(always)]
 pub fn velocity_gradient<const D: usize>(
     node: &Nodes<D>,
     shape: &Shape<D>,
     p: usize,
 ) -> SMatrix<f64, D, D> {
-    let mut grad_v = SMatrix::<f64, D, D>::zeros();
+    gradient(&node.v, &node.m, shape, p)
+}
+
+/// Gives ∇q at particle p of a nodal field q: Σ_I (q_I − q_0) ⊗ ∇N_Ip, in the unit of q per m.
+///
+/// q_0 is that of the first of the particle's nodes. It may be taken
+/// off because Σ_I ∇N_Ip = 0; then nodes that move alike give exactly zero,
+/// and a fast body loses no digits of its strain. A node without mass (`m` is m_I) has no
+/// velocity: it moves with q_0.
+#[inline(always)]
+pub fn gradient<const D: usize>(
+    q: &[SVector<f64, D>],
+    m: &[f64],
+    shape: &Shape<D>,
+    p: usize,
+) -> SMatrix<f64, D, D> {
+    let mut grad_q = SMatrix::<f64, D, D>::zeros();
     let watch = shape.has_tiny(p); // else every node has mass
-    let Some(first) = shape.find(p, |I| !watch || node.m[I] > 0.0) else {
-        return grad_v;
+    let Some(first) = shape.find(p, |I| !watch || m[I] > 0.0) else {
+        return grad_q;
     };
-    let v_0 = node.v[first];
+    let q_0 = q[first];
     shape.lines(p, |line| {
         for (I, _, grad_N_Ip) in line.entries() {
-            if watch && node.m[I] == 0.0 {
+            if watch && m[I] == 0.0 {
                 continue;
             }
-            grad_v += outer(&(node.v[I] - v_0), &grad_N_Ip);
+            grad_q += outer(&(q[I] - q_0), &grad_N_Ip);
         }
     });
-    grad_v
+    grad_q
 }
 // ANCHOR_END: velocity_gradient
 

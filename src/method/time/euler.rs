@@ -9,7 +9,7 @@
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::model::{Model, State};
-use crate::method::reading::StressUpdate;
+use crate::method::reading::{Kinematics, StressUpdate};
 
 /// Both forms have so many steps.
 pub const STEPS: usize = 7;
@@ -25,6 +25,10 @@ pub fn forward_step<const D: usize>(
     dt: f64,
     t: f64,
 ) -> Result<(), Breakdown> {
+    let order = match model.kinematics {
+        Kinematics::AsPrinted => order,
+        Kinematics::Consistent => StressUpdate::Last, // the velocity that moves the particles
+    };
     match n {
         1 => {
             discard(node);
@@ -34,7 +38,7 @@ pub fn forward_step<const D: usize>(
         3 => {
             impose_essential(node, mass, &model.fixed);
             if order == StressUpdate::First {
-                update_material(particle, node, shape, model, dt)?;
+                strain_material(particle, node, shape, model, dt)?;
             }
         }
         4 => {
@@ -49,7 +53,7 @@ pub fn forward_step<const D: usize>(
                 impose_essential(node, mass, &model.fixed);
             }
             if order != StressUpdate::First {
-                update_material(particle, node, shape, model, dt)?;
+                strain_material(particle, node, shape, model, dt)?;
             }
         }
     }
@@ -81,9 +85,11 @@ pub fn corrected_step<const D: usize>(
         5 => advance_momentum(node, dt),
         6 => move_with_nodes(particle, node, shape, dt), // (22) (23)
         _ => {
-            map_momentum_anew(node, particle, shape);
-            impose_essential(node, mass, &model.fixed);
-            update_material(particle, node, shape, model, dt)?;
+            if model.kinematics == Kinematics::AsPrinted {
+                map_momentum_anew(node, particle, shape);
+                impose_essential(node, mass, &model.fixed);
+            }
+            strain_material(particle, node, shape, model, dt)?;
         }
     }
     Ok(())

@@ -87,7 +87,7 @@ pub fn step<const D: usize>(
         6 => move_particles(particle, node, shape, &parameters, dt), // (24) (25) (26)
         _ => {
             average_velocity(node, &parameters, dt);
-            update_material(particle, node, shape, model, dt)?;
+            strain_material(particle, node, shape, model, dt)?;
         }
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! Time integration (§4) is a sequence of steps; each scheme is a function of the number of its
 //! step.
 
+pub mod deformation;
 pub mod euler;
 pub mod generalized_alpha;
 pub mod newmark;

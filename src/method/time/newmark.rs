@@ -1,10 +1,11 @@
 //! The paper's Algorithm is Newmark's explicit predictor-corrector with γ = ½, β = 0, the
 //! central difference (27)-(29).
 
+use super::deformation::gradient_of_predictor;
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::model::{Model, State};
-use crate::method::reading::StepEight;
+use crate::method::reading::{Kinematics, StepEight};
 
 /// The Algorithm has so many steps.
 pub const STEPS: usize = 9;
@@ -23,18 +24,23 @@ pub fn step<const D: usize>(
     t: f64,
 ) -> Result<(), Breakdown> {
     match n {
-        1 => predict(particle, node, shape, dt), // (27) (28)
+        1 => {
+            if model.kinematics == Kinematics::Consistent {
+                gradient_of_predictor(particle, node, shape, dt);
+            }
+            predict(particle, node, shape, dt); // (27) (28)
+        }
         2 => {
             discard(node);
             tabulate(shape, scratch, particle, model)?;
         }
         3 => transfer(node, mass, particle, shape)?, // (13)
         4 => impose_essential(node, mass, &model.fixed),
-        5 => increment_strain(particle, node, shape, dt), // (16)
-        6 => {
-            update_density(particle)?; // (17)
-            update_stress(particle, &model.law); // (3)
+        5 if model.kinematics == Kinematics::AsPrinted => {
+            increment_strain(particle, node, shape, dt); // (16)
         }
+        5 => {} // the strain is that of step 1
+        6 => update_material(particle, model)?, // (17) (3)
         7 => {
             balance_forces(node, particle, shape, model, t); // (14) (15)
             accelerate(node, mass); // (18)

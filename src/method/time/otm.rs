@@ -5,10 +5,10 @@
 //! between stand local max-ent functions on the moving nodes, tabulated anew in
 //! every step. Time goes by central differences, as in [`crate::method::time::newmark`].
 
+use super::deformation::deform;
 use super::steps::balance_forces;
 use crate::method::basis::scattered;
 use crate::method::breakdown::Breakdown;
-use crate::method::continuum::law;
 use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::{Nodes, Particles};
 use crate::method::continuum::sums;
@@ -53,7 +53,7 @@ pub fn step<const D: usize>(
         1 => kick(node, 0.5 * dt),
         2 => move_nodes(node, dt),
         3 => move_particles(particle, node, shape, dt), // N_ap of k
-        4 => deform(particle, node, shape, model, dt)?, // N_ap of k
+        4 => deform_particles(particle, node, shape, model, dt)?, // N_ap of k
         5 => tabulate_again(state, model)?,             // N_ap at k+1
         6 => {
             node.f.fill(SVector::zeros());
@@ -95,11 +95,11 @@ pub fn move_particles<const D: usize>(
     }
 }
 
-/// Step 4 deforms them: with G = Σ_a Δt v_a ⊗ ∇N_ap and f = 1 + G it is F ← f F, ρ ← ρ /
-/// det f, and σ += D : Δε with Δε = sym(G (1 + G/2)⁻¹).
+/// Step 4 deforms them by f = 1 + G with G = Σ_a Δt v_a ⊗ ∇N_ap, the gradient of that move:
+/// [`deform`].
 ///
 /// Errors: [`Breakdown::Inverted`] when det f ≤ 0; [`Breakdown::NotFinite`].
-pub fn deform<const D: usize>(
+pub fn deform_particles<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
     shape: &Shape<D>,
@@ -107,19 +107,9 @@ pub fn deform<const D: usize>(
     dt: f64,
 ) -> Result<(), Breakdown> {
     for p in 0..particle.len() {
-        let G = sums::velocity_gradient(node, shape, p) * dt;
-        let (f, J) = law::increment(&G);
-        if !J.is_finite() {
-            return Err(Breakdown::NotFinite { particle: p, symbol: "strain" });
-        }
-        let d_eps = law::midpoint_strain(&G).filter(|_| J > 0.0);
-        let inverted = Breakdown::Inverted { particle: p, strain: J - 1.0 };
-        particle.d_eps[p] = d_eps.ok_or(inverted)?;
-        particle.F[p] = f * particle.F[p];
-        particle.rho[p] /= J;
-        particle.sigma[p] += model.law.stress_increment(&particle.d_eps[p]);
+        particle.G[p] = sums::velocity_gradient(node, shape, p) * dt;
     }
-    Ok(())
+    deform(particle, &model.law)
 }
 
 /// Shows v_p = Σ_a v_a N_ap for what is recorded; nothing is computed from it.

@@ -1,9 +1,10 @@
 //! The steps of the paper's Algorithm and of the other schemes have one function each: outputs
 //! first, inputs after, so that a signature reads like its equation.
 
+use super::deformation::deform;
 use crate::method::basis::{self, Scratch};
 use crate::method::breakdown::Breakdown;
-use crate::method::continuum::law::{self, LinearElastic};
+use crate::method::continuum::law::{self, Elastic};
 use crate::method::continuum::mass::MassMatrix;
 use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::{Nodes, Particles};
@@ -98,7 +99,7 @@ pub fn impose_essential<const D: usize>(
 
 // ANCHOR: increment_strain
 /// Step 5 takes the strain increment from the nodes: Δε_p = Δt ε̇_p with (16) ε̇_p = ½ Σ_I
-/// (∇N_Ip v_I + (∇N_Ip v_I)ᵀ)  (–).
+/// (∇N_Ip v_I + (∇N_Ip v_I)ᵀ)  (–). Where the particles keep it, all of G_p = Δt ∇v instead.
 pub fn increment_strain<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
@@ -107,7 +108,10 @@ pub fn increment_strain<const D: usize>(
 ) {
     for p in 0..particle.len() {
         let grad_v = sums::velocity_gradient(node, shape, p);
-        particle.d_eps[p] = law::symmetric_part(&grad_v) * dt;
+        match particle.G.get_mut(p) {
+            None => particle.d_eps[p] = law::symmetric_part(&grad_v) * dt,
+            Some(G_p) => *G_p = grad_v * dt,
+        }
     }
 }
 // ANCHOR_END: increment_strain
@@ -132,12 +136,27 @@ pub fn update_density<const D: usize>(particle: &mut Particles<D>) -> Result<(),
 
 // ANCHOR: update_stress
 /// Step 6 also updates the stress, by (3): σ_p += D : Δε_p  (Pa).
-pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &LinearElastic) {
+pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &Elastic) {
     for p in 0..particle.len() {
         particle.sigma[p] += law.stress_increment(&particle.d_eps[p]);
     }
 }
 // ANCHOR_END: update_stress
+
+/// Step 6 as a whole: density and stress by (17) and (3) as printed, or at finite strain.
+///
+/// Errors: [`Breakdown::Inverted`], [`Breakdown::NotFinite`].
+pub fn update_material<const D: usize>(
+    particle: &mut Particles<D>,
+    model: &Model<D>,
+) -> Result<(), Breakdown> {
+    if model.keeps_gradient() {
+        return deform(particle, &model.law);
+    }
+    update_density(particle)?; // (17)
+    update_stress(particle, &model.law); // (3)
+    Ok(())
+}
 
 // ANCHOR: balance_forces
 /// Step 7 balances the forces: f_I = f_I^int + f_I^ext, (14) (15), with the loads of time
@@ -198,11 +217,11 @@ pub fn correct<const D: usize>(
 // ANCHOR_END: correct
 
 // ANCHOR: euler_steps
-/// Updates strain, density and stress of all particles from the nodal velocity: (16),
-/// (17), (3).
+/// Strains all particles by the nodal velocity, and updates density and stress: (16), (17),
+/// (3).
 ///
 /// Errors: [`Breakdown::Inverted`], [`Breakdown::NotFinite`].
-pub fn update_material<const D: usize>(
+pub fn strain_material<const D: usize>(
     particle: &mut Particles<D>,
     node: &Nodes<D>,
     shape: &Shape<D>,
@@ -210,9 +229,7 @@ pub fn update_material<const D: usize>(
     dt: f64,
 ) -> Result<(), Breakdown> {
     increment_strain(particle, node, shape, dt);
-    update_density(particle)?;
-    update_stress(particle, &model.law);
-    Ok(())
+    update_material(particle, model)
 }
 
 /// (18) advances the momentum: p_I += f_I Δt  (kg m/s), and v_I += a_I Δt  (m/s).

@@ -2,7 +2,8 @@
 
 use crate::support::*;
 use lme_mpm::method::basis::Basis;
-use lme_mpm::method::continuum::law::{LinearElastic, density};
+use lme_mpm::method::choice::Law;
+use lme_mpm::method::continuum::law::{Elastic, density};
 use lme_mpm::method::exact::Fields;
 use lme_mpm::method::measure::rms;
 use lme_mpm::port::trace::{self, Entry, TraceRecorder, hex, number};
@@ -62,7 +63,7 @@ fn law<const D: usize>(strains: [SMatrix<f64, D, D>; 3]) -> String {
     let mut k = 0;
     for (E, nu) in [(200e9, 0.0), (1000.0, 0.3), (7.0, -0.4)] {
         for d_eps in strains {
-            let law = LinearElastic::new(E, nu);
+            let law = Elastic::new(Law::Rate, E, nu);
             let sigma = law.stress_increment(&d_eps);
             kernel.at(k, 0).components("E", 0, &[E]);
             kernel.at(k, 0).components("nu", 0, &[nu]);
