@@ -29,9 +29,9 @@ fn gravity_converges_to_the_exact_swing() {
     assert!((slope(&h, &u) - 5.0 / 3.0).abs() < 0.05, "{u:?}");
     assert!((slope(&h, &v) - 1.0).abs() < 0.05, "{v:?}");
     let scene = scene(GRAVITY, &[]);
-    let exact = setup::exact(&scene).unwrap();
+    let exact = setup::exact::<1>(&scene).unwrap();
     let (rho, b, L, E) = (2000.0, 9.81, 10.0, 5e9);
-    let half_swing = exact.at(L, 0.5 * scene.time.end).displacement;
+    let half_swing = exact.along(L, 0.5 * scene.time.end).displacement;
     assert_relative_eq!(half_swing, rho * b * L * L / E, max_relative = 1e-9);
 }
 
@@ -243,9 +243,9 @@ fn loads_undeclared_are_uncomputed() {
     }
 }
 
-/// The manufactured motion across ten cells to each side is lost by the linear basis,
-/// whose error is above a half, and met by local max-ent, γ = 0.8, to 1.5e-3, with the
-/// consistent mass better still; uGIMP has less than a third of the linear basis's error,
+/// The manufactured motion across ten cells to each side is lost by the linear basis and by
+/// local max-ent with γ = 4, which blow up or err by more than 0.3, and met by local max-ent, γ = 0.8, to 1.5e-3, with the
+/// consistent mass better still; uGIMP errs by less than 0.15,
 /// B-splines less than uGIMP. The bound is that of an independent prototype.
 #[test]
 fn manufactured_motion_across_cells() {
@@ -259,22 +259,30 @@ fn manufactured_motion_across_cells() {
             let row = format!("{},{}", basis.name, mass.name);
             let scene = scene(&linear, &[basis.sets, mass.sets].concat());
             let Ok(outcome) = run(&scene, &mut |_| {}) else {
-                writeln!(table, "{row},blew up,,,").unwrap();
+                writeln!(table, "{row},lost,,,").unwrap();
                 continue;
             };
             let middle = value(&scene, &outcome, "displacement_middle_rms_relative");
             let Each { v, sigma, u } = field_errors(&scene, &outcome);
+            if middle > 0.3 {
+                // Another last bit at the start gives other digits: they say nothing.
+                writeln!(table, "{row},lost,,,").unwrap();
+                continue;
+            }
             writeln!(table, "{row},{middle:.1e},{u:.1e},{v:.1e},{sigma:.1e}").unwrap();
             errors.push(((basis, mass), middle));
         }
     }
     let of = |basis: BasisCase, mass: MassCase| {
-        errors.iter().find(|(case, _)| *case == (basis, mass)).unwrap().1
+        let found = errors.iter().find(|(case, _)| *case == (basis, mass));
+        found.map_or(f64::INFINITY, |(_, error)| *error)
     };
-    assert!(of(LINEAR, LUMPED) > 0.5);
+    for mass in MASSES {
+        assert!(of(LINEAR, mass).is_infinite() && of(LME_NARROW, mass).is_infinite());
+    }
     assert!(of(LME_WIDE, LUMPED) < 1.5e-3);
     assert!(of(LME_WIDE, CONSISTENT) < of(LME_WIDE, LUMPED));
-    assert!(of(UGIMP, LUMPED) < 0.3 * of(LINEAR, LUMPED));
+    assert!(of(UGIMP, LUMPED) < 0.15);
     assert!(of(BSPLINE, LUMPED) < of(UGIMP, LUMPED));
     approve("manufactured__errors", &table);
 }

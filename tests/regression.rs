@@ -58,7 +58,7 @@ fn dyka_figures() {
 /// Figs. 5 and 6 of the paper, and the fronts behind them, are the approved ones.
 #[test]
 fn exact_figures() {
-    let Ok(Exact::Linear { thrown: bar, .. }) = setup::exact(&dyka(&[])) else {
+    let Ok(Exact::Linear { thrown: bar, .. }) = setup::exact::<1>(&dyka(&[])) else {
         panic!("the bar has an exact solution");
     };
     let (length, time) = (bar.length, bar.length / bar.c());

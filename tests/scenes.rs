@@ -105,6 +105,7 @@ fn scenes_keys_are_read() {
             (_, "probe.component") => (DISCS, ["x", "y"]),
             (_, "output.vtk") => (DISCS, [a, b]),
             ("basis" | "manufactured", _) => (MANUFACTURED, [a, b]), // with local max-ent
+            ("vortex", _) => (VORTEX, [a, b]),
             ("vibration", _) => (VIBRATION, [a, b]),
             ("body_force", _) => (GRAVITY, [a, b]),
             ("traction", _) => (TRACTION, [a, b]),
@@ -135,7 +136,7 @@ fn scenes_defaults_are_what_is_read() {
             Without::Refused | Without::Says(_) => continue,
         };
         let text = match key.place().0 {
-            "basis" => MANUFACTURED, // with local max-ent
+            "basis" | "manufactured" => MANUFACTURED, // with local max-ent
             "body_force" => GRAVITY,
             "traction" => TRACTION,
             _ => DYKA, // free at its right end
@@ -145,7 +146,7 @@ fn scenes_defaults_are_what_is_read() {
         assert_eq!(scene(text, &[&set]), scene(text, &[]), "{set}");
         keys += 1;
     }
-    assert_eq!(keys, 11);
+    assert_eq!(keys, 14);
 }
 
 /// No column of a history but a probe's own can be a probe's name.

@@ -38,7 +38,7 @@ fn template(scene: Option<&Path>) -> Result<Template, Fault> {
 
 /// Refuses a scene without an exact solution: there is no error to measure.
 fn comparable(template: &Template) -> Result<(), Fault> {
-    setup::exact(&template.scene).map(|_| ())
+    setup::has_exact(&template.scene)
 }
 
 /// Does `lme-mpm trade`.

@@ -64,11 +64,7 @@ pub fn observed_order(h: &[f64], error: &[f64]) -> Order {
 // ANCHOR: energy
 /// Gives the strain energy of particle p (J): ½ σ_p : D⁻¹ : σ_p m_p / ρ_p with the rate law,
 /// else W(F_p) m_p / (ρ_p J_p), where ρ_p J_p is the density at t = 0.
-pub fn strain_energy_of<const D: usize>(
-    particle: &Particles<D>,
-    law: &Elastic,
-    p: usize,
-) -> f64 {
+pub fn strain_energy_of<const D: usize>(particle: &Particles<D>, law: &Elastic, p: usize) -> f64 {
     let volume = particle.m[p] / particle.rho[p];
     match particle.F.get(p) {
         None => law.energy_density(&particle.sigma[p]) * volume,

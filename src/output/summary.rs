@@ -1,9 +1,10 @@
 //! The summary of a run names its errors, peaks, energy and cost.
 
 use crate::method::cost::Cost;
-use crate::method::exact::Exact;
+use crate::method::exact::mode::Mode;
 use crate::method::measure::rms;
 use crate::run::Outcome;
+use crate::run::columns::{of_stress, per_axis, upper_half};
 use crate::scene::{Motion, Probe, Quantity, Scene, wave_speed};
 use crate::setup;
 
@@ -24,7 +25,7 @@ impl SummaryLine {
 
 /// These scales make errors relative. For a body thrown at v0 they are those of
 /// the bar: v0, the plateau Z v0/2, and v0 L/4c. For a mode they are V, Z V and V/ω
-/// with its largest speed V; for loads V, Z V and V L/c with V = b L/c + t/Z.
+/// with its largest speed V, and so for a motion with V and amplitude of its own; for loads V, Z V and V L/c with V = b L/c + t/Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
     /// (m/s).
@@ -54,12 +55,19 @@ impl Scales {
                 displacement: thrown * scene.body.length[0] / (4.0 * c),
             };
         }
-        let (velocity, displacement) = match setup::exact(scene) {
-            Ok(Exact::Linear { vibration: Some(v), .. }) => {
-                (v.velocity.abs(), v.velocity.abs() / (v.c * v.mode.k))
+        let (velocity, displacement) = match &scene.motion {
+            Motion::Vibration { mode, velocity } => {
+                let mode = Mode::new(scene.ends(0), *mode, scene.body.length[0]);
+                (velocity.abs(), velocity.abs() / (c * mode.k))
             }
-            Ok(Exact::Manufactured(m)) => ((m.amplitude * m.c * m.mode.k).abs(), m.amplitude.abs()),
-            _ => {
+            Motion::Manufactured(spec) => {
+                ((spec.amplitude * spec.frequency).abs(), spec.amplitude.abs())
+            }
+            Motion::Vortex(spec) => {
+                let arc = (spec.angle * spec.radius).abs();
+                (arc * spec.frequency, arc)
+            }
+            Motion::Regions(_) => {
                 let body = scene.body_force.as_ref().map_or(0.0, |b| size(&b.acceleration));
                 let sides = scene.traction.iter().flat_map(|load| load.sides.iter().flatten());
                 let traction = sides.map(|t| size(t)).fold(0.0, f64::max);
@@ -83,13 +91,13 @@ impl Scales {
 /// Gives all lines of the summary; `wall_time` (s) of the time loop.
 pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<SummaryLine> {
     let mut lines = Vec::new();
-    let exact = setup::exact(scene).is_ok();
+    let exact = setup::has_exact(scene).is_ok();
     let scales = Scales::of(scene);
     for probe in &scene.probes {
         probe_lines(&mut lines, probe, outcome, exact.then(|| scales.scale(probe.quantity)));
     }
     if exact {
-        field_lines(&mut lines, &scales, outcome);
+        field_lines(&mut lines, &scales, scene.dimension(), outcome);
     }
     energy_lines(&mut lines, scene, outcome);
     lines.push(SummaryLine::new("time_step", outcome.dt, "s"));
@@ -123,20 +131,36 @@ fn probe_lines(lines: &mut Vec<SummaryLine>, probe: &Probe, outcome: &Outcome, s
     add("peak", peak(&computed), unit);
 }
 
-/// Adds the errors of all particles at the end.
-fn field_lines(lines: &mut Vec<SummaryLine>, scales: &Scales, outcome: &Outcome) {
+/// Adds the errors of all particles at the end: of a vector or tensor, the root of the mean
+/// square of its size.
+fn field_lines(lines: &mut Vec<SummaryLine>, scales: &Scales, axes: usize, outcome: &Outcome) {
     let of = |name: &str| outcome.particles.column(name).unwrap_or_default();
     for (name, unit, scale) in [
         ("velocity", "m/s", scales.velocity),
         ("stress", "Pa", scales.stress),
         ("displacement", "m", scales.displacement),
     ] {
-        let error = rms(of(name).into_iter().zip(of(&format!("{name}_exact"))));
+        let of_component = |(component, times): (String, f64)| {
+            let exact = format!("{component}_exact");
+            let error = rms(of(&component).into_iter().zip(of(&exact)));
+            times * error * error
+        };
+        let square: f64 = components(name, axes).map(of_component).sum();
+        let error = libm::sqrt(square);
         lines.push(SummaryLine::new(format!("{name}_field_rms"), error, unit));
         if scale > 0.0 {
             lines.push(SummaryLine::new(format!("{name}_field_rms_relative"), error / scale, "1"));
         }
     }
+}
+
+/// Lists the columns of a quantity, and how often each entry stands in it.
+fn components(name: &'static str, axes: usize) -> impl Iterator<Item = (String, f64)> {
+    let one = move |i: usize| (per_axis(name, axes, i), 1.0);
+    let of_tensor =
+        upper_half(axes).map(move |(i, j)| (of_stress(axes, i, j), if i == j { 1.0 } else { 2.0 }));
+    let vectors = (0..axes).map(one).filter(move |_| name != "stress");
+    vectors.chain(of_tensor.filter(move |_| name == "stress"))
 }
 
 /// Adds the energy at both ends of the run, and how far it drifted from the start, or from

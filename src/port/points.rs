@@ -79,7 +79,11 @@ impl Points {
 /// Errors: [`Fault::NoExact`]; [`Fault::Points`] with the line of the first
 /// point that is not a number, outside the body, or before t = 0.
 pub fn exact_at(scene: &Scene, name: &str, input: impl Read) -> Result<Vec<u8>, Fault> {
-    let exact = setup::exact(scene)?;
+    setup::has_exact(scene)?;
+    if scene.dimension() > 1 {
+        return Err(Fault::NoExact { why: "points are asked for along one axis, and it has more" });
+    }
+    let exact = setup::exact::<1>(scene)?;
     let points = Points::read(name, input, &[&["x", "t"]])?;
     let (origin, length) = (scene.body.origin[0], scene.body.length[0]);
     let end = origin + length;
@@ -97,7 +101,7 @@ pub fn exact_at(scene: &Scene, name: &str, input: impl Read) -> Result<Vec<u8>, 
             return Err(points.fault(n, named("t", t), allowed));
         }
         // At the body's own upper corner, to the last bit, as in a scene.
-        let fields = exact.at(if x == end { length } else { x - origin }, t);
+        let fields = exact.along(if x == end { length } else { x - origin }, t);
         let values = [x, t, fields.velocity, fields.stress, fields.displacement];
         rows.push(values.map(shortest).to_vec());
     }

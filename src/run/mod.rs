@@ -1,5 +1,6 @@
 //! The time loop carries a scene to its end: scene → state → step, step, … → history.
 
+pub mod columns;
 mod open;
 mod outcome;
 mod particles;

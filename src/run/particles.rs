@@ -1,25 +1,19 @@
 //! Makes the table of all particles at one time.
 
+use super::columns::{of_stress, per_axis, upper_half};
 use super::table::Table;
 use crate::method::continuum::state::Particles;
 use crate::method::exact::Exact;
 use crate::scene::Scene;
-use crate::scene::keys::AXES;
 use nalgebra::SVector;
 
-/// Names a component: `name` where there is one axis; `name_x`, `name_y` or `name_z` where
-/// there are more.
-pub fn per_axis(name: &str, axes: usize, i: usize) -> String {
-    if axes == 1 { name.to_string() } else { format!("{name}_{}", AXES[i]) }
-}
-
 /// Makes the table of every particle in the scene's own coordinates at time `t`; its
-/// `reference` (m) is where it stood at t = 0.
+/// `reference` (m) is its material point.
 pub fn table<const D: usize>(
     scene: &Scene,
     particle: &Particles<D>,
     reference: &[SVector<f64, D>],
-    exact: &Option<Exact>,
+    exact: &Option<Exact<D>>,
     t: f64,
 ) -> Table {
     let mut table = Table::new();
@@ -35,20 +29,24 @@ pub fn table<const D: usize>(
         for i in 0..D {
             table.put(|| per_axis("velocity", D, i), particle.v[p][i]);
         }
-        for (i, j) in (0..D).flat_map(|i| (i..D).map(move |j| (i, j))) {
-            let name = || match D {
-                1 => "stress".to_string(),
-                _ => format!("stress_{}{}", AXES[i], AXES[j]),
-            };
-            table.put(name, particle.sigma[p][(i, j)]);
+        for (i, j) in upper_half(D) {
+            table.put(|| of_stress(D, i, j), particle.sigma[p][(i, j)]);
         }
         table.put(|| "density".into(), particle.rho[p]);
         table.put(|| "mass".into(), particle.m[p]);
         if let Some(exact) = exact {
-            let fields = exact.at(reference[p][0], t);
-            table.put(|| "displacement_exact".into(), fields.displacement);
-            table.put(|| "velocity_exact".into(), fields.velocity);
-            table.put(|| "stress_exact".into(), fields.stress);
+            let fields = exact.at(&reference[p], t);
+            for i in 0..D {
+                let name = || format!("{}_exact", per_axis("displacement", D, i));
+                table.put(name, fields.displacement[i]);
+            }
+            for i in 0..D {
+                let name = || format!("{}_exact", per_axis("velocity", D, i));
+                table.put(name, fields.velocity[i]);
+            }
+            for (i, j) in upper_half(D) {
+                table.put(|| format!("{}_exact", of_stress(D, i, j)), fields.stress[(i, j)]);
+            }
         }
         table.end_row();
     }

@@ -1,7 +1,8 @@
 //! Writes the history of a run, and watches its energy.
 
+use super::columns::per_axis;
 use super::outcome::Frame;
-use super::particles::{self, per_axis};
+use super::particles;
 use super::table::Table;
 use crate::method::breakdown::{Breakdown, Moment};
 use crate::method::continuum::state::Particles;
@@ -24,14 +25,14 @@ pub struct Recorder<'a, const D: usize> {
     pub frames: Vec<Frame>,
     scene: &'a Scene,
     model: &'a Model<D>,
-    exact: Option<Exact>,
+    exact: Option<Exact<D>>,
     /// The particle that each probe follows.
     followed: Vec<usize>,
     /// Total energy at the start (J).
     energy: f64,
     /// What the loads do; `None` without loads.
     work: Option<LoadWork<D>>,
-    /// Where the particles stood at t = 0 (m).
+    /// X_p, from which displacements count (m).
     reference: Vec<SVector<f64, D>>,
 }
 
@@ -47,11 +48,12 @@ struct LoadWork<const D: usize> {
 impl<'a, const D: usize> Recorder<'a, D> {
     /// Makes a recorder before the first step, with its columns named.
     pub fn new(scene: &'a Scene, model: &'a Model<D>, state: &State<D>) -> Self {
-        let x = &state.particle.x;
+        let reference = setup::material_points(scene);
         let followed = scene.probes.iter().map(|probe| {
             let position = SVector::from_fn(|d, _| probe.position[d]);
-            nearest(x, &position)
+            nearest(&reference, &position)
         });
+        let followed = followed.collect();
         let loaded = model.loads.is_some();
         let mut recorder = Recorder {
             history: Table::new(),
@@ -59,10 +61,14 @@ impl<'a, const D: usize> Recorder<'a, D> {
             scene,
             model,
             exact: setup::exact(scene).ok(),
-            followed: followed.collect(),
+            followed,
             energy: 0.0,
-            work: loaded.then(|| LoadWork { sum: 0.0, moved: 0.0, before: x.clone() }),
-            reference: x.clone(),
+            work: loaded.then(|| LoadWork {
+                sum: 0.0,
+                moved: 0.0,
+                before: state.particle.x.clone(),
+            }),
+            reference,
         };
         // Names the columns, which a run that breaks down at once has, too.
         recorder.row(state, Moment::START, [0.0; 2]);
@@ -146,11 +152,11 @@ impl<'a, const D: usize> Recorder<'a, D> {
             };
             history.put(|| probe.name.clone(), value);
             if let Some(exact) = &self.exact {
-                let fields = exact.at(reference[0], moment.time);
+                let fields = exact.at(&reference, moment.time);
                 let value = match probe.quantity {
-                    Quantity::Velocity(_) => fields.velocity,
-                    Quantity::Stress(..) => fields.stress,
-                    Quantity::Displacement(_) => fields.displacement,
+                    Quantity::Velocity(i) => fields.velocity[i],
+                    Quantity::Stress(i, j) => fields.stress[(i, j)],
+                    Quantity::Displacement(i) => fields.displacement[i],
                 };
                 history.put(|| format!("{}_exact", probe.name), value);
             }

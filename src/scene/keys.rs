@@ -194,14 +194,14 @@ pub const KEYS: &[Key] = &[
         "What holds this component of the velocity there",
     ),
     may("initial_velocity", List, Without::Says("at rest"), "Regions that are thrown")
-        .besides("in place of vibration and manufactured"),
+        .besides("in place of vibration, manufactured and vortex"),
     must("initial_velocity.from", PerAxis(any("m")), "The region's lower corner")
         .besides("inside the body"),
     must("initial_velocity.to", PerAxis(any("m")), "The region's upper corner")
         .besides("above `from`, inside the body, with a particle in between"),
     must("initial_velocity.velocity", PerAxis(any("m/s")), "The velocity there"),
     may("vibration", Table, Without::Says("no mode"), "A natural mode: v = V φ(x)")
-        .besides("in 1D, in place of initial_velocity and manufactured"),
+        .besides("in 1D, in place of initial_velocity, manufactured and vortex"),
     must("vibration.mode", One(MODE), "The number of the mode")
         .besides("at most half of the particles"),
     must("vibration.velocity", One(any("m/s")), "V, the largest velocity"),
@@ -209,19 +209,38 @@ pub const KEYS: &[Key] = &[
         "manufactured",
         Table,
         Without::Says("no such motion"),
-        "u = A φ(X) sin ωt, kept by a body force",
+        "u_i = A φ(X_i) sin(ωt + θ_i) along every axis, kept by a body force",
     )
-    .besides("in 1D, in place of initial_velocity and vibration"),
+    .besides(
+        "in place of initial_velocity, vibration and vortex; in 2D and 3D with sides that hold \
+         their normal component alone",
+    ),
     must("manufactured.mode", One(MODE), "The number of the mode")
         .besides("at most half of the particles"),
     must("manufactured.amplitude", One(any("m")), "A, the largest displacement")
         .besides("|A| k < 1, so that no material turns inside out"),
+    may("manufactured.frequency", One(any("rad/s")), Without::Says("c k"), "ω, how fast it swings"),
+    may("manufactured.phase", PerAxis(any("rad")), Without::Number(0.0), "θ along each axis"),
+    may(
+        "vortex",
+        Table,
+        Without::Says("no such motion"),
+        "A ring about the middle of the body turns",
+    )
+    .besides(
+        "in 2D with body.law = \"neo-hookean\", in place of initial_velocity, vibration and \
+             manufactured",
+    ),
+    must("vortex.radius", One(positive("m")), "R_0, where the ring turns most; it is R_0/2 wide")
+        .besides("so that 5/4 of it is inside the body"),
+    must("vortex.angle", One(any("rad")), "A, the largest angle"),
+    must("vortex.frequency", One(positive("rad/s")), "ω of the angle A sin ωt"),
     may("body_force", Table, Without::Says("none"), "A force per mass, everywhere the same")
-        .besides("not with manufactured"),
+        .besides("not with manufactured or vortex"),
     must("body_force.acceleration", PerAxis(any("m/s²")), "b, the acceleration"),
     may("body_force.ramp", One(RAMP), Without::Number(0.0), "The time over which it grows"),
     may("traction", Table, Without::Says("none"), "Forces on the sides of the box")
-        .besides("not with manufactured or balls"),
+        .besides("not with manufactured, vortex or balls"),
     may(
         "traction.<side>",
         PerAxis(any("Pa")),

@@ -44,10 +44,13 @@ pub fn traction(
     Ok(Some(TractionSpec { sides, ramp: values.number("traction.ramp")? }))
 }
 
-/// Refuses a load beside the body force of a manufactured solution.
+/// Refuses a load beside the body force that keeps a chosen motion going.
 fn unforced(values: &Values, key: &str) -> Result<(), Box<SceneError>> {
-    match values.has("manufactured") {
-        false => Ok(()),
-        true => Err(values.error(key, "the scene has `manufactured`, which brings its own load")),
+    match ["manufactured", "vortex"].into_iter().find(|table| values.has(table)) {
+        None => Ok(()),
+        Some(table) => {
+            let problem = format!("the scene has `{table}`, which brings its own load");
+            Err(values.error(key, problem))
+        }
     }
 }

@@ -1,13 +1,15 @@
 //! Reads how the body of a scene moves at the start.
 
 use super::fault::SceneError;
-use super::parts::{Body, GridSpec, Motion, Region, Side};
+use super::keys::{AXES, SIDES};
+use super::parts::{Body, GridSpec, ManufacturedSpec, Motion, Region, Side, VortexSpec};
+use super::sizes::wave_speed;
 use super::values::{Values, counted};
-use crate::method::choice::Method;
+use crate::method::choice::{Law, Method};
 use crate::method::exact::mode::Mode;
 use crate::method::quadrature::points;
 
-/// Reads one of the tables `vibration`, `manufactured` and `initial_velocity`, or none.
+/// Reads one of the tables `vibration`, `manufactured`, `vortex` and `initial_velocity`, or none.
 pub fn motion(
     values: &Values,
     method: Method,
@@ -21,20 +23,77 @@ pub fn motion(
             velocity: values.number("vibration.velocity")?,
         }),
         Some("manufactured") => {
-            let mode = mode(values, "manufactured.mode", grid)?;
-            let ends = [0, 1].map(|upper: usize| boundary[0][upper].end());
-            let k = Mode::new(ends, mode, body.length[0]).k;
-            let small = |amplitude: f64| (amplitude * k).abs() < 1.0;
-            let amplitude = values.number_if("manufactured.amplitude", small)?;
-            Ok(Motion::Manufactured { mode, amplitude })
+            manufactured(values, body, grid, boundary).map(Motion::Manufactured)
         }
+        Some("vortex") => vortex(values, body).map(Motion::Vortex),
         _ => regions(values, method, body, grid).map(Motion::Regions),
     }
 }
 
-/// Finds the table that sets the motion, and refuses two.
+/// Reads the table `manufactured`.
+fn manufactured(
+    values: &Values,
+    body: &Body,
+    grid: &GridSpec,
+    boundary: &[[Side; 2]],
+) -> Result<ManufacturedSpec, Box<SceneError>> {
+    let mode = mode(values, "manufactured.mode", grid)?;
+    let waves = |d: usize| {
+        let ends = [0, 1].map(|upper: usize| boundary[d][upper].end(d));
+        Mode::new(ends, mode, body.length[d]).k
+    };
+    let k = (0..values.dimension()).map(waves).fold(0.0, f64::max);
+    let small = |amplitude: f64| (amplitude * k).abs() < 1.0;
+    let amplitude = values.number_if("manufactured.amplitude", small)?;
+    if values.dimension() > 1 {
+        sliding(values, boundary)?;
+    }
+    let frequency = match values.has("manufactured.frequency") {
+        true => values.number("manufactured.frequency")?,
+        false => wave_speed(body) * k,
+    };
+    Ok(ManufacturedSpec { mode, amplitude, frequency, phase: values.axes("manufactured.phase")? })
+}
+
+/// Refuses sides that do not hold the normal component of the velocity, or hold another: the
+/// motion slides along all of them.
+fn sliding(values: &Values, boundary: &[[Side; 2]]) -> Result<(), Box<SceneError>> {
+    for (axis, sides) in boundary.iter().enumerate() {
+        for (upper, side) in sides.iter().enumerate() {
+            if (0..side.fixed.len()).any(|i| side.fixed[i] != (i == axis)) {
+                let name = SIDES[axis][upper];
+                let problem = format!("this motion slides along the side `{name}`");
+                let mut error = values.error("manufactured", problem);
+                error.allowed =
+                    format!("boundary.{name} = {{ {} = \"fixed\" }}, and so on", AXES[axis]);
+                return Err(error);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Reads the table `vortex`.
+fn vortex(values: &Values, body: &Body) -> Result<VortexSpec, Box<SceneError>> {
+    if body.law != Law::NeoHookean {
+        let problem = "the body force of this motion is that of another law";
+        let mut error = values.error_at("body.law", "vortex", problem);
+        error.allowed = "\"neo-hookean\"".into();
+        return Err(error);
+    }
+    let half = 0.5 * body.length.iter().copied().fold(f64::INFINITY, f64::min);
+    let inside = |radius: f64| 1.25 * radius <= half;
+    Ok(VortexSpec {
+        radius: values.number_if("vortex.radius", inside)?,
+        angle: values.number("vortex.angle")?,
+        frequency: values.number("vortex.frequency")?,
+    })
+}
+
+/// Finds the table that sets the motion, and refuses two, and one in a dimension that it does
+/// not have.
 fn only_one(values: &Values) -> Result<Option<&'static str>, Box<SceneError>> {
-    let mut tables = vec!["vibration", "manufactured"];
+    let mut tables = vec!["vibration", "manufactured", "vortex"];
     tables.retain(|table| values.has(table));
     if !values.entries("initial_velocity").is_empty() {
         tables.push("initial_velocity");
@@ -44,18 +103,26 @@ fn only_one(values: &Values) -> Result<Option<&'static str>, Box<SceneError>> {
         return Err(values.error(other, problem));
     }
     let table = tables.first().copied();
-    if let Some(mode) = table.filter(|name| *name != "initial_velocity" && values.dimension() > 1) {
-        let problem = format!("the scene has {}", counted(values.dimension(), "axis"));
-        return Err(values.error(mode, problem));
+    let fits = match table {
+        Some("vibration") => values.dimension() == 1,
+        Some("vortex") => values.dimension() == 2,
+        _ => true,
+    };
+    match table.filter(|_| !fits) {
+        None => Ok(table),
+        Some(name) => {
+            let problem = format!("the scene has {}", counted(values.dimension(), "axis"));
+            Err(values.error(name, problem))
+        }
     }
-    Ok(table)
 }
 
 /// Reads the number of a mode. It needs two particles for each half wave, or it is another mode
 /// that starts.
 fn mode(values: &Values, key: &str, grid: &GridSpec) -> Result<usize, Box<SceneError>> {
     let n = values.whole(key)?;
-    let places = grid.cells[0].saturating_mul(grid.particles_per_cell[0]);
+    let along = |d: usize| grid.cells[d].saturating_mul(grid.particles_per_cell[d]);
+    let places = (0..values.dimension()).map(along).min().unwrap_or(0);
     if 2 * n > places {
         return Err(values.error(key, format!("{places} particles cannot show mode {n}")));
     }

@@ -96,9 +96,9 @@ pub struct Side {
 }
 
 impl Side {
-    /// Gives the end of a bar with this side.
-    pub fn end(&self) -> End {
-        if self.fixed[0] { End::Fixed } else { End::Free }
+    /// Gives the end of a bar along `axis` with this side.
+    pub fn end(&self, axis: usize) -> End {
+        if self.fixed[axis] { End::Fixed } else { End::Free }
     }
 }
 
@@ -109,8 +109,33 @@ pub enum Motion {
     Regions(Vec<Region>),
     /// v = V φ(x) in a natural mode of the bar.
     Vibration { mode: usize, velocity: f64 },
-    /// u = A φ(X) sin ωt, kept going at finite strain by a body force.
-    Manufactured { mode: usize, amplitude: f64 },
+    /// u_i = A φ(X_i) sin(ωt + θ_i), kept going at finite strain by a body force.
+    Manufactured(ManufacturedSpec),
+    /// A ring about the middle of the body turns to and fro, kept going by a body force.
+    Vortex(VortexSpec),
+}
+
+/// This declares a motion in modes along every axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ManufacturedSpec {
+    pub mode: usize,
+    /// A (m).
+    pub amplitude: f64,
+    /// ω (rad/s).
+    pub frequency: f64,
+    /// θ along each axis (rad).
+    pub phase: Vec<f64>,
+}
+
+/// This declares a ring that turns by A sin ωt at its middle radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VortexSpec {
+    /// R_0 (m).
+    pub radius: f64,
+    /// A (rad).
+    pub angle: f64,
+    /// ω (rad/s).
+    pub frequency: f64,
 }
 
 /// This declares a force per mass, the same everywhere.
@@ -183,9 +208,15 @@ impl Scene {
         self.body.length.len()
     }
 
+    /// Gives both ends along an axis, by the component of the velocity along it.
+    pub fn ends(&self, axis: usize) -> [End; 2] {
+        let [lower, upper] = &self.boundary[axis];
+        [lower.end(axis), upper.end(axis)]
+    }
+
     /// Tells whether forces act from outside.
     pub fn is_loaded(&self) -> bool {
-        let manufactured = matches!(self.motion, Motion::Manufactured { .. });
-        manufactured || self.body_force.is_some() || self.traction.is_some()
+        let kept_going = matches!(self.motion, Motion::Manufactured(_) | Motion::Vortex(_));
+        kept_going || self.body_force.is_some() || self.traction.is_some()
     }
 }

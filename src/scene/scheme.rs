@@ -53,8 +53,7 @@ pub fn integrator(values: &Values) -> Result<Integrator, Box<SceneError>> {
 
 /// Reads which map the strain is taken from.
 pub fn kinematics(values: &Values) -> Result<Kinematics, Box<SceneError>> {
-    let readings =
-        [("as-printed", Kinematics::AsPrinted), ("consistent", Kinematics::Consistent)];
+    let readings = [("as-printed", Kinematics::AsPrinted), ("consistent", Kinematics::Consistent)];
     values.choose("time.kinematics", &readings)
 }
 

@@ -30,6 +30,9 @@ pub const SHIPPED: &[Shipped] = shipped![
     "gravity",
     "traction",
     "manufactured",
+    "periodic-bar",
+    "axis-aligned",
+    "vortex",
     "colliding-discs"
 ];
 

@@ -1,21 +1,25 @@
 //! Says which exact solution a scene has.
 
-use crate::method::exact::Exact;
 use crate::method::exact::forced::{Forced, Load};
 use crate::method::exact::manufactured::Manufactured;
 use crate::method::exact::mode::{Mode, Vibration};
 use crate::method::exact::riemann::{Bar, End, Patch};
+use crate::method::exact::vortex::Vortex;
+use crate::method::exact::{Exact, Moved};
 use crate::scene::fault::Fault;
 use crate::scene::{Motion, Scene, wave_speed};
 
 /// Finds the exact solution of `scene`.
 ///
 /// Errors: [`Fault::NoExact`] with the reason.
-pub fn exact(scene: &Scene) -> Result<Exact, Fault> {
-    if scene.dimension() > 1 {
+pub fn exact<const D: usize>(scene: &Scene) -> Result<Exact<D>, Fault> {
+    if let Some(moved) = moved(scene) {
+        return Ok(Exact::Moved(moved));
+    }
+    if D > 1 {
         return Err(Fault::NoExact { why: "it has more than one dimension" });
     }
-    let ends = [0, 1].map(|upper: usize| scene.boundary[0][upper].end());
+    let ends = scene.ends(0);
     let (length, density, modulus) =
         (scene.body.length[0], scene.body.density, scene.body.elastic().p_wave_modulus());
     let c = wave_speed(&scene.body);
@@ -32,14 +36,47 @@ pub fn exact(scene: &Scene) -> Result<Exact, Fault> {
             let mode = Mode::new(ends, *mode, length);
             vibration = Some(Vibration { mode, velocity: *velocity, c, modulus });
         }
-        Motion::Manufactured { mode, amplitude } => {
-            let mode = Mode::new(ends, *mode, length);
-            let amplitude = *amplitude;
-            return Ok(Exact::Manufactured(Manufactured { mode, amplitude, c, modulus }));
-        }
+        Motion::Manufactured(_) | Motion::Vortex(_) => {} // returned above
     }
     let forced = forced(scene, ends, c);
     Ok(Exact::Linear { thrown, vibration, forced })
+}
+
+/// Tells whether a scene has an exact solution, whatever its dimension.
+///
+/// Errors: [`Fault::NoExact`] with the reason.
+pub fn has_exact(scene: &Scene) -> Result<(), Fault> {
+    match scene.dimension() {
+        1 => exact::<1>(scene).map(|_| ()),
+        2 => exact::<2>(scene).map(|_| ()),
+        _ => exact::<3>(scene).map(|_| ()),
+    }
+}
+
+/// Gives the chosen motion of a scene; `None` for a scene that moves by itself.
+pub fn moved<const D: usize>(scene: &Scene) -> Option<Moved<D>> {
+    let (density, material) = (scene.body.density, scene.body.elastic());
+    match &scene.motion {
+        Motion::Manufactured(spec) => Some(Moved::Manufactured(Manufactured {
+            modes: std::array::from_fn(|d| {
+                Mode::new(scene.ends(d), spec.mode, scene.body.length[d])
+            }),
+            amplitude: spec.amplitude,
+            omega: spec.frequency,
+            phase: std::array::from_fn(|d| spec.phase[d]),
+            density,
+            material,
+        })),
+        Motion::Vortex(spec) => Some(Moved::Vortex(Vortex {
+            centre: std::array::from_fn(|d| 0.5 * scene.body.length[d]),
+            radius: spec.radius,
+            angle: spec.angle,
+            omega: spec.frequency,
+            density,
+            material,
+        })),
+        Motion::Regions(_) | Motion::Vibration { .. } => None,
+    }
 }
 
 /// Gives what the loads of a scene do to the bar; `None` without loads.

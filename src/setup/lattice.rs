@@ -68,11 +68,10 @@ pub fn loads<const D: usize>(scene: &Scene, places: &[Place<D>]) -> Option<Loads
         b: SVector::from_fn(|d, _| body.acceleration[d]),
         ramp: body.ramp,
     });
-    let manufactured = match super::exact::exact(scene) {
-        Ok(Exact::Manufactured(solution)) => Some(BodyForce::Manufactured {
-            solution,
-            X: places.iter().map(|place| place.x[0]).collect(),
-        }),
+    let kept_going = match super::exact::exact(scene) {
+        Ok(Exact::Moved(solution)) => {
+            Some(BodyForce::Moved { solution, X: places.iter().map(|place| place.x).collect() })
+        }
         _ => None,
     };
     let traction = scene.traction.as_ref().map(|load| {
@@ -95,6 +94,6 @@ pub fn loads<const D: usize>(scene: &Scene, places: &[Place<D>]) -> Option<Loads
         }
         Traction { layer, ramp: load.ramp }
     });
-    let body = uniform.or(manufactured);
+    let body = uniform.or(kept_going);
     (body.is_some() || traction.is_some()).then_some(Loads { body, traction })
 }

@@ -3,14 +3,16 @@
 mod exact;
 pub mod lattice;
 
-pub use exact::exact;
+pub use exact::{exact, has_exact};
 
 use crate::method::choice::Method;
+use crate::method::continuum::law::volume_change;
 use crate::method::continuum::state::Particles;
+use crate::method::exact::{Exact, Moved};
 use crate::method::grid::Grid;
 use crate::method::model::{Model, State};
 use crate::scene::{Motion, Scene};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// Makes the model of a scene with D axes; D is [`Scene::dimension`], and a larger one panics.
 pub fn model<const D: usize>(scene: &Scene) -> Model<D> {
@@ -48,6 +50,12 @@ fn grid<const D: usize>(scene: &Scene) -> Grid<D> {
     )
 }
 
+/// Lists the material points of a scene's particles (m): where they stand at t = 0, unless the
+/// motion starts displaced.
+pub fn material_points<const D: usize>(scene: &Scene) -> Vec<SVector<f64, D>> {
+    lattice::places(scene).iter().map(|place| place.x).collect()
+}
+
 /// Makes the state at k = 0: particles in every cell of the body, each with its share of the
 /// cell's mass (unit thickness in the missing directions), moving as its region says.
 pub fn initial_state<const D: usize>(model: &Model<D>, scene: &Scene) -> State<D> {
@@ -62,7 +70,7 @@ pub fn initial_state<const D: usize>(model: &Model<D>, scene: &Scene) -> State<D
                 let region = regions.iter().find(|r| r.contains(place.x.as_slice()));
                 region.map_or(SVector::zeros(), |r| SVector::from_fn(|d, _| r.velocity[d]))
             }
-            (_, Ok(exact)) => SVector::repeat(exact.at(place.x[0], 0.0).velocity),
+            (_, Ok(exact)) => exact.at(&place.x, 0.0).velocity,
             // A mode of more than one dimension is refused with the scene.
             (_, Err(_)) => SVector::zeros(),
         };
@@ -74,7 +82,30 @@ pub fn initial_state<const D: usize>(model: &Model<D>, scene: &Scene) -> State<D
             corners.into_iter().map(|I| model.grid.position(I)).collect()
         }
     };
-    State::new(model, particle, nodes)
+    let mut state = State::new(model, particle, nodes);
+    if let Ok(Exact::Moved(moved)) = &exact {
+        displace(&mut state, moved);
+    }
+    state
+}
+
+/// Puts particles, and the nodes of OTM, where a chosen motion has them at t = 0, strained and
+/// stressed as there.
+fn displace<const D: usize>(state: &mut State<D>, moved: &Moved<D>) {
+    let particle = &mut state.particle;
+    for p in 0..particle.len() {
+        let X = particle.x[p];
+        let (fields, F) = (moved.at(&X, 0.0), moved.deformation(&X, 0.0));
+        particle.x[p] += fields.displacement;
+        particle.sigma[p] = fields.stress;
+        particle.rho[p] /= 1.0 + volume_change(&(F - SMatrix::identity()));
+        if let Some(F_p) = particle.F.get_mut(p) {
+            *F_p = F;
+        }
+    }
+    for x in &mut state.node.x {
+        *x += moved.at(x, 0.0).displacement;
+    }
 }
 
 /// Lists the nodes on or beyond a side with the components that are fixed there.

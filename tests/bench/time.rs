@@ -60,7 +60,7 @@ fn prediction<const D: usize>(bencher: Bencher, case: Case) {
 #[divan::bench]
 fn exact_solution(bencher: Bencher) {
     let bar = run::parse("dyka", "dyka.toml", DYKA, &[]).unwrap_or_else(|fault| panic!("{fault}"));
-    let exact = setup::exact(&bar).unwrap_or_else(|fault| panic!("{fault}"));
+    let exact = setup::exact::<1>(&bar).unwrap_or_else(|fault| panic!("{fault}"));
     let (length, end) = (bar.body.length[0], bar.time.end);
     bencher.counter(ItemsCount::new(1000_usize)).bench(|| {
         for n in 0..1000 {

@@ -8,6 +8,9 @@ pub const VIBRATION: &str = include_str!("../../data/scenes/vibration.toml");
 pub const GRAVITY: &str = include_str!("../../data/scenes/gravity.toml");
 pub const TRACTION: &str = include_str!("../../data/scenes/traction.toml");
 pub const MANUFACTURED: &str = include_str!("../../data/scenes/manufactured.toml");
+pub const PERIODIC_BAR: &str = include_str!("../../data/scenes/periodic-bar.toml");
+pub const AXIS_ALIGNED: &str = include_str!("../../data/scenes/axis-aligned.toml");
+pub const VORTEX: &str = include_str!("../../data/scenes/vortex.toml");
 pub const DYKA_OTM: &str = include_str!("../../data/scenes/dyka-otm.toml");
 pub const DISCS: &str = include_str!("../../data/scenes/colliding-discs.toml");
 

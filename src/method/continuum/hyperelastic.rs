@@ -70,9 +70,7 @@ fn logarithmic_strain<const D: usize>(H: &SMatrix<f64, D, D>) -> SMatrix<f64, D,
 
 /// Finds the principal values of a symmetric matrix, and their directions as columns, by
 /// Jacobi's rotations: each makes one entry beside the diagonal zero.
-fn principal<const D: usize>(
-    mut A: SMatrix<f64, D, D>,
-) -> (SVector<f64, D>, SMatrix<f64, D, D>) {
+fn principal<const D: usize>(mut A: SMatrix<f64, D, D>) -> (SVector<f64, D>, SMatrix<f64, D, D>) {
     /// Entries shrink quadratically; 3 × 3 needs four or five sweeps.
     const SWEEPS: usize = 12;
     let mut Q = SMatrix::<f64, D, D>::identity();

@@ -109,9 +109,7 @@ pub fn volume_change<const D: usize>(H: &SMatrix<f64, D, D>) -> f64 {
     match D {
         1 => H[(0, 0)],
         2 => H.trace() + minor(0, 1),
-        _ => {
-            H.trace() + (minor(0, 1) + minor(1, 2) + minor(0, 2)) + determinant(H)
-        }
+        _ => H.trace() + (minor(0, 1) + minor(1, 2) + minor(0, 2)) + determinant(H),
     }
 }
 

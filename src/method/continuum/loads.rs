@@ -1,7 +1,8 @@
 //! A scene may have loads: a body force (10), and a traction on a layer of particles (11).
 
 use super::state::Particles;
-use crate::method::exact::manufactured::Manufactured;
+use crate::method::exact::Moved;
+use crate::method::exact::forced::ramp;
 use nalgebra::SVector;
 
 /// Loads act on the particles from outside; a scene without loads has none of this.
@@ -16,8 +17,8 @@ pub struct Loads<const D: usize> {
 pub enum BodyForce<const D: usize> {
     /// b min(t/T, 1).
     Uniform { b: SVector<f64, D>, ramp: f64 },
-    /// That of a manufactured solution at the particles' first places X_p (m).
-    Manufactured { solution: Manufactured, X: Vec<f64> },
+    /// That which keeps a chosen motion going, at the material points X_p (m).
+    Moved { solution: Moved<D>, X: Vec<SVector<f64, D>> },
 }
 
 /// A traction acts on the particles of the layer behind each loaded side.
@@ -31,19 +32,12 @@ pub struct Traction<const D: usize> {
 }
 
 // ANCHOR: loads
-/// Says how much of a load acts at time `t`: min(t/T, 1), and 1 for T = 0.
-pub fn ramp(t: f64, T: f64) -> f64 {
-    if t < T { t / T } else { 1.0 }
-}
-
 impl<const D: usize> BodyForce<D> {
     /// Gives b_p at time `t` (m/s²).
     pub fn at(&self, p: usize, t: f64) -> SVector<f64, D> {
         match self {
             BodyForce::Uniform { b, ramp: T } => b * ramp(t, *T),
-            BodyForce::Manufactured { solution, X } => {
-                SVector::repeat(solution.body_force(X[p], t))
-            }
+            BodyForce::Moved { solution, X } => solution.body_force(&X[p], t),
         }
     }
 }

@@ -7,6 +7,11 @@
 use super::fields::Fields;
 use super::riemann::{End, Family};
 
+/// Says how much of a load acts at time `t`: min(t/T, 1), and 1 for T = 0.
+pub fn ramp(t: f64, T: f64) -> f64 {
+    if t < T { t / T } else { 1.0 }
+}
+
 /// A load grows linearly to its value over the time T, and stays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load {
@@ -32,7 +37,7 @@ impl Load {
 
     /// Gives the load at t ≥ 0.
     fn now(&self, t: f64) -> f64 {
-        self.value * crate::method::continuum::loads::ramp(t, self.ramp)
+        self.value * ramp(t, self.ramp)
     }
     // ANCHOR_END: ramp_integrals
 }

@@ -39,7 +39,7 @@ pub fn step<const D: usize>(
         5 if model.kinematics == Kinematics::AsPrinted => {
             increment_strain(particle, node, shape, dt); // (16)
         }
-        5 => {} // the strain is that of step 1
+        5 => {}                                 // the strain is that of step 1
         6 => update_material(particle, model)?, // (17) (3)
         7 => {
             balance_forces(node, particle, shape, model, t); // (14) (15)

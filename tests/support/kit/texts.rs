@@ -98,14 +98,14 @@ pub fn measure() -> String {
 
 /// v, σ and u of the exact bar at places between and beside its fronts.
 pub fn exact() -> String {
-    let exact = setup::exact(&dyka(&[])).unwrap();
+    let exact = setup::exact::<1>(&dyka(&[])).unwrap();
     let mut places = Vec::new();
     for x in [0.0, 0.05, 0.099, 0.12, 0.1333] {
         for tau in [0.1, 0.3, 0.9, 1.6, 2.1, 2.9, 3.6, 3.9, 17.3] {
             places.push((x, tau * transit()));
         }
     }
-    let fields: Vec<Fields> = places.iter().map(|(x, t)| exact.at(*x, *t)).collect();
+    let fields: Vec<Fields> = places.iter().map(|(x, t)| exact.along(*x, *t)).collect();
     let mut kernel = TraceRecorder::default();
     let mut column = |step: usize, symbol: &'static str, values: Vec<f64>| {
         for (n, value) in values.into_iter().enumerate() {
