@@ -12,6 +12,7 @@ mod convergence;
 mod exact;
 mod extremes;
 mod extremes_of_scenes;
+mod finite;
 mod house;
 mod integrators;
 mod laws;
