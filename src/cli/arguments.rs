@@ -174,6 +174,27 @@ pub enum Command {
         #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
         jobs: u16,
     },
+    /// Measure the orders of convergence of a motion with an exact solution
+    ///
+    /// Writes orders.csv: errors and orders in h, with Δt in proportion to h², and in Δt, for
+    /// every basis and mass matrix, 1 to 8 particles per cell, one span of the scene's time and
+    /// five, and for volumes that are the exact ones.
+    #[command(
+        after_help = "Example:\n  lme-mpm orders --out out/orders --jobs 2\n  lme-mpm orders --scene vortex --list | parallel --jobs 2 '{}' '>' 'rows/{#}.csv'\n  lme-mpm orders --scene vortex --out out/orders --merge rows/*.csv"
+    )]
+    Orders {
+        #[command(flatten)]
+        rows: RowArguments,
+        /// The scene, a file or a shipped one; the shipped manufactured motion without it
+        #[arg(long, value_name = "FILE", default_value = "manufactured")]
+        scene: PathBuf,
+        /// Where to write
+        #[arg(long, value_name = "DIR", default_value = "out/orders")]
+        out: PathBuf,
+        /// Threads; each run has one of its own
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+    },
     /// Map the largest stable time step, predicted and measured
     ///
     /// Writes stability.csv for every basis, integrator, mass, number of particles

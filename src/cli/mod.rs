@@ -48,6 +48,9 @@ pub fn main() -> ExitCode {
             studies::recommend(&scene, error, quantity, out, jobs)
         }
         Some(Command::Gamma { rows, out, jobs }) => studies::gamma(&rows, &out, jobs),
+        Some(Command::Orders { rows, scene, out, jobs }) => {
+            studies::orders(&rows, &scene, &out, jobs)
+        }
         Some(Command::Stability { rows, scene, out, jobs }) => {
             studies::stability(&rows, scene.as_deref(), &out, jobs)
         }

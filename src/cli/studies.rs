@@ -14,6 +14,7 @@ use lme_mpm::study::gamma::{self as gammas, AtGamma};
 use lme_mpm::study::log::{self, TimedRun};
 use lme_mpm::study::map;
 use lme_mpm::study::measured::Criterion;
+use lme_mpm::study::orders::{self, Along, Ladder, Volumes};
 use lme_mpm::study::ranking::{self, LEVELS, Tried};
 use lme_mpm::study::rows::{self, Study};
 use lme_mpm::study::trade as trades;
@@ -263,6 +264,59 @@ pub fn gamma(arguments: &RowArguments, dir: &Path, jobs: u16) -> Result<(), Faul
 /// Refuses to write over what is merged: the study's own table in `dir`.
 fn spare_all(merge: &[PathBuf], dir: &Path, own: &str) -> Result<(), Fault> {
     merge.iter().try_for_each(|path| files::spare(path, dir, |name| name == own))
+}
+
+/// Does `lme-mpm orders`.
+pub fn orders(arguments: &RowArguments, scene: &Path, dir: &Path, jobs: u16) -> Result<(), Fault> {
+    let template = template(Some(scene))?;
+    comparable(&template)?;
+    let ladders = orders::ladders();
+    let names: Vec<String> = ladders.iter().map(Ladder::name).collect();
+    if arguments.list {
+        return list_rows("orders", Some(scene), &names);
+    }
+    if let Some(row) = &arguments.row {
+        let one = &ladders[rows::find(&names, row)?];
+        let row = orders::study(&template, std::slice::from_ref(one), 1, &mut || {});
+        return print_bytes(&rows::with_scene(&template.digest()?, &orders::table(&row)?));
+    }
+    let rows = if arguments.merge.is_empty() {
+        prepare(dir)?;
+        let bar = progress(ladders.len());
+        let rows = orders::study(&template, &ladders, usize::from(jobs), &mut || bar.inc(1));
+        bar.finish_and_clear();
+        rows
+    } else {
+        spare_all(&arguments.merge, dir, "orders.csv")?;
+        let study = Study { scene: template.digest()?, columns: &orders::columns(), names: &names };
+        let rows = study.merged(&arguments.merge, orders::read)?;
+        prepare(dir)?;
+        rows
+    };
+    write_all(dir, &[("orders.csv".to_string(), orders::table(&rows)?)], &[])?;
+    print_bytes(fitted(dir, &rows).as_bytes())
+}
+
+/// Tells the terminal the orders in h with two particles per cell over one span.
+fn fitted(dir: &Path, rows: &[orders::Row]) -> String {
+    let mut table = comfy_table::Table::new();
+    table.load_style(comfy_table::presets::NOTHING);
+    table.set_header(["velocity error at the finest", "its order in h", "way"]);
+    for orders::Row { ladder, climbed } in rows {
+        let shown = ladder.particles_per_cell == 2 && ladder.spans == 1;
+        if !shown || ladder.along == Along::TimeStep || ladder.volumes == Volumes::Exact {
+            continue;
+        }
+        let cells = match climbed {
+            Ok(found) => {
+                let error = found.errors.last().map_or(f64::NAN, |error| error[0]);
+                [format!("{error:.1e}"), found.orders()[0].to_string(), ladder.name()]
+            }
+            Err(problem) => ["–".to_string(), problem.clone(), ladder.name()],
+        };
+        table.add_row(cells);
+    }
+    format!("{table}\nall {} rows are written to {}\n", rows.len(), dir.display())
 }
 
 /// Does `lme-mpm stability`.

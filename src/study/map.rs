@@ -13,7 +13,8 @@ use crate::scene::fault::Fault;
 const STEPS: usize = 1500;
 const TOLERANCE: f64 = 2e-3;
 
-const BASES: [&str; 6] = [
+/// Every basis stands here with what it needs.
+pub const BASES: [&str; 6] = [
     "basis.kind=linear",
     "basis.kind=ugimp",
     "basis.kind=bspline",

@@ -5,6 +5,7 @@ pub mod gamma;
 pub mod log;
 pub mod map;
 pub mod measured;
+pub mod orders;
 pub mod pool;
 pub mod ranking;
 pub mod rows;

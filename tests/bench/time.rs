@@ -65,7 +65,7 @@ fn exact_solution(bencher: Bencher) {
     bencher.counter(ItemsCount::new(1000_usize)).bench(|| {
         for n in 0..1000 {
             let (i, k) = ((n % 100) as f64, (n / 100) as f64);
-            black_box(exact.at(i / 100.0 * length, k / 10.0 * end));
+            black_box(exact.along(i / 100.0 * length, k / 10.0 * end));
         }
     });
 }
