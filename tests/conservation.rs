@@ -190,8 +190,8 @@ fn conservation_of_angular_momentum_with_consistent_mass() {
 
 /// A spinning disc loses less than a fifth of its angular momentum, with Newmark's method
 /// and the two lossy schemes, three bases and both masses. Its rim is full of nodes that
-/// see it from afar. With the consistent mass matrix they are light and lumped: the linear
-/// basis still loses less with it, the wide ones lose more.
+/// see it from afar. With the consistent mass matrix they are light, and their ties take
+/// more of a rotation than the lumped matrix does.
 #[test]
 fn conservation_of_angular_momentum() {
     let mut table = String::from("basis,scheme,lumped,consistent\n");
@@ -204,7 +204,7 @@ fn conservation_of_angular_momentum() {
                 assert!(*momentum < 1e-10, "{name}: {momentum:e}");
             }
             let (lumped, consistent) = (lumped.angular, consistent.angular);
-            assert_eq!(consistent.abs() < lumped.abs(), basis == LINEAR, "{name}");
+            assert!(consistent.abs() > lumped.abs(), "{name}");
             writeln!(table, "{name},{lumped:.1e},{consistent:.1e}").unwrap();
         }
     }

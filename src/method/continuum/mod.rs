@@ -4,6 +4,7 @@
 
 pub mod hyperelastic;
 pub mod law;
+pub mod light;
 pub mod loads;
 pub mod mass;
 pub mod shape;

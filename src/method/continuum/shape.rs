@@ -144,6 +144,17 @@ impl<const D: usize> Shape<D> {
         size_of_val(&self.row[..]) + size_of_val(&self.factor[..]) + size_of_val(&self.listed[..])
     }
 
+    /// Gives for each axis the functions of particle p along it; `None` for a list.
+    pub fn axes(&self, p: usize) -> Option<[&[Factor]; D]> {
+        let Row { start, count, .. } = self.row[p];
+        let mut rest = self.factor.get(start..).filter(|_| count[0] > 0)?;
+        Some(count.map(|count| {
+            let (axis, others) = rest.split_at(count as usize);
+            rest = others;
+            axis
+        }))
+    }
+
     /// Says whether particle p may see a node without mass: one whose N_Ip is 0, or so tiny
     /// that m_p N_Ip is. To ask this once for a row is cheaper than to look at every m_I.
     pub fn has_tiny(&self, p: usize) -> bool {
