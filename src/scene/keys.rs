@@ -104,7 +104,7 @@ pub const KEYS: &[Key] = &[
     may(
         "grid.beyond.<side>",
         One(whole(0.0, Unbounded)),
-        Without::Says("0 beyond a fixed side, 1 beyond a free one and for uGIMP"),
+        Without::Says("0 beyond a side that holds a component, 1 beyond a free one and for uGIMP"),
         "Cells beyond this side",
     ),
     must("basis", Table, "The shape functions"),

@@ -96,6 +96,11 @@ pub struct Side {
 }
 
 impl Side {
+    /// Tells whether some component of the velocity is zero there.
+    pub fn holds(&self) -> bool {
+        self.fixed.contains(&true)
+    }
+
     /// Gives the end of a bar along `axis` with this side.
     pub fn end(&self, axis: usize) -> End {
         if self.fixed[axis] { End::Fixed } else { End::Free }
