@@ -33,6 +33,7 @@ mod rows;
 mod runs;
 mod scenes;
 mod search;
+mod sides;
 mod stability;
 mod steps;
 mod studies;
