@@ -22,6 +22,7 @@ mod loads;
 mod mass;
 mod matrix;
 mod one_bar;
+mod orders;
 mod otm;
 mod otm_bar;
 mod port;
