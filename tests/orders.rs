@@ -2,7 +2,7 @@
 
 use crate::support::*;
 use lme_mpm::study::configuration::Template;
-use lme_mpm::study::orders::{self, Ladder, Row};
+use lme_mpm::study::orders::{self, Ladder, Ascent};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -11,7 +11,7 @@ fn template(name: &str, text: &str) -> Template {
 }
 
 /// Climbs ladders of the study: basis and mass, particles per cell, volumes; one span, along h.
-fn climbed(template: &Template, wanted: &[(&str, usize, &str)]) -> Vec<Row> {
+fn climbed(template: &Template, wanted: &[(&str, usize, &str)]) -> Vec<Ascent> {
     let name = |(way, per_cell, volumes): &(&str, usize, &str)| {
         format!("basis.kind={way} particles_per_cell={per_cell} spans=1 volumes={volumes} along=h")
     };
@@ -25,19 +25,19 @@ fn climbed(template: &Template, wanted: &[(&str, usize, &str)]) -> Vec<Row> {
 }
 
 /// Errors of the velocity on every grid, or where a run broke.
-fn velocity_errors(row: &Row) -> Vec<f64> {
+fn velocity_errors(row: &Ascent) -> Vec<f64> {
     let found = row.climbed.as_ref().unwrap_or_else(|problem| panic!("{problem}"));
     found.errors.iter().map(|error| error[0]).collect()
 }
 
 /// Lays rows out: the way, the errors of the velocity from the coarsest grid to the finest,
 /// and the orders of velocity, stress and displacement.
-fn table(motions: &[(&str, &[Row])]) -> String {
+fn table(motions: &[(&str, &[Ascent])]) -> String {
     let mut table = String::from(
         "motion,basis and mass,particles per cell,volumes,velocity errors,order of v,of σ,of u\n",
     );
     let rows = motions.iter().flat_map(|(motion, rows)| rows.iter().map(move |row| (motion, row)));
-    for (motion, Row { ladder, climbed }) in rows {
+    for (motion, Ascent { ladder, climbed }) in rows {
         let name = ladder.name();
         let part = |key: &str| -> String {
             let from = name.find(key).unwrap() + key.len();

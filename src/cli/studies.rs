@@ -298,11 +298,11 @@ pub fn orders(arguments: &RowArguments, scene: &Path, dir: &Path, jobs: u16) -> 
 }
 
 /// Tells the terminal the orders in h with two particles per cell over one span.
-fn fitted(dir: &Path, rows: &[orders::Row]) -> String {
+fn fitted(dir: &Path, rows: &[orders::Ascent]) -> String {
     let mut table = comfy_table::Table::new();
     table.load_style(comfy_table::presets::NOTHING);
     table.set_header(["velocity error at the finest", "its order in h", "way"]);
-    for orders::Row { ladder, climbed } in rows {
+    for orders::Ascent { ladder, climbed } in rows {
         let shown = ladder.particles_per_cell == 2 && ladder.spans == 1;
         if !shown || ladder.along == Along::TimeStep || ladder.volumes == Volumes::Exact {
             continue;

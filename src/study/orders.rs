@@ -55,9 +55,9 @@ pub struct Climbed {
     pub errors: Vec<[f64; 3]>,
 }
 
-/// A row of the study is a ladder with what came of it, or where it broke.
+/// An ascent is a ladder with what came of it, or where it broke.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct Ascent {
     pub ladder: Ladder,
     pub climbed: Result<Climbed, String>,
 }
@@ -133,14 +133,14 @@ pub fn study(
     ladders: &[Ladder],
     jobs: usize,
     progress: &mut dyn FnMut(),
-) -> Vec<Row> {
+) -> Vec<Ascent> {
     let work = |ladder: &Ladder| {
         let climbed = match template.scene.dimension() {
             1 => climb::<1>(template, ladder),
             2 => climb::<2>(template, ladder),
             _ => climb::<3>(template, ladder),
         };
-        Row { ladder: ladder.clone(), climbed }
+        Ascent { ladder: ladder.clone(), climbed }
     };
     pool::all(ladders, jobs, work, progress)
 }
@@ -274,9 +274,9 @@ pub fn columns() -> Vec<&'static str> {
 }
 
 /// Writes the study as CSV; sizes and errors as lists with spaces between the numbers.
-pub fn table(rows: &[Row]) -> Result<Vec<u8>, Fault> {
+pub fn table(rows: &[Ascent]) -> Result<Vec<u8>, Fault> {
     let list = |numbers: Vec<f64>| numbers.into_iter().map(shortest).collect::<Vec<_>>().join(" ");
-    let line = |row: &Row| {
+    let line = |row: &Ascent| {
         let mut cells = vec![row.ladder.name()];
         match &row.climbed {
             Ok(climbed) => {
@@ -299,7 +299,7 @@ pub fn table(rows: &[Row]) -> Result<Vec<u8>, Fault> {
 }
 
 /// Reads a row of the table, with its name.
-pub fn read(cells: &[&str]) -> Option<(String, Row)> {
+pub fn read(cells: &[&str]) -> Option<(String, Ascent)> {
     let [name, sizes, v, sigma, u, .., problem] = cells else { return None };
     let ladder = ladders().into_iter().find(|ladder| ladder.name() == *name)?;
     let list = |text: &str| -> Option<Vec<f64>> {
@@ -313,5 +313,5 @@ pub fn read(cells: &[&str]) -> Option<(String, Row)> {
         }
         problem => Err(problem.to_string()),
     };
-    Some((name.to_string(), Row { ladder, climbed }))
+    Some((name.to_string(), Ascent { ladder, climbed }))
 }
