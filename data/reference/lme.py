@@ -7,6 +7,10 @@ stops when |r| < 1e-50. All inputs are binary64 numbers; they are written as
 shortest decimals and as hexadecimal floats. A point exactly on the hull is
 replaced by one 1e-45 h further inside: its values are the limit.
 
+The sets slanted2 and slanted3 are a triangle and a tetrahedron. Their nodes stand at
+dyadic places, so that those on a side are exactly on it; a point is made from a place
+on a side, an edge or in a corner, and a distance along a direction inwards.
+
 Writes beside this file
   lme_nodes.csv   set,node,x,y,z,x_hex,y_hex,z_hex
   lme_points.csv  point,set,domain,gamma,spacing,x,y,z,x_hex,y_hex,z_hex,
@@ -46,6 +50,38 @@ def scattered(counts, h, jitter):
     return out
 
 
+def simplex(corners, n):
+    """All lattice places of the simplex; inner ones are moved towards its last corner."""
+    d, out = len(corners[0]), []
+
+    def fill(counts, left):
+        if len(counts) == d:
+            counts = counts + [left]
+            place = [sum(k * c[i] for k, c in zip(counts, corners)) / n for i in range(d)]
+            if min(counts) > 0:
+                part = (counts[1] - counts[0]) / 8
+                place = [x + part * (c - x) for x, c in zip(place, corners[-1])]
+            out.append(place)
+            return
+        for k in range(left + 1):
+            fill(counts + [k], left - k)
+
+    fill([], n)
+    return out
+
+
+CORNERS2 = [[0.0, 0.0], [4.0, 2.0], [1.0, 3.0]]
+CORNERS3 = [[0.0, 0.0, 0.0], [4.0, 1.0, -1.0], [1.0, 4.0, 1.0], [-1.0, 1.0, 4.0]]
+# A place on the hull and a direction inwards.
+SLANTED = {
+    "slanted2": [([1.625, 0.8125], [-1, 2]), ([0.0, 0.0], [1, 1])],
+    "slanted3": [
+        ([1.375, 1.75, 0.125], [-1, 1, 4]),
+        ([1.5, 0.375, -0.375], [0, 1, 1]),
+        ([0.0, 0.0, 0.0], [1, 2, 1]),
+    ],
+}
+
 SETS = {
     "line": (grid(1, [13], 0.1), 0.1),
     "grid2": (grid(2, [7, 6], 0.1), 0.1),
@@ -55,6 +91,8 @@ SETS = {
     "far": (grid(1, [13], 0.125, float(2**37)), 0.125),
     "huge": (grid(1, [13], 2.0**300), 2.0**300),
     "tiny": (grid(1, [13], 2.0**-300), 2.0**-300),
+    "slanted2": (simplex(CORNERS2, 4), 1.0),
+    "slanted3": (simplex(CORNERS3, 4), 1.0),
 }
 
 
@@ -101,7 +139,7 @@ def solve(a, gamma):
         reached = following
 
 
-def evaluate(nodes, x, gamma, h):
+def evaluate(nodes, x, gamma, h, inwards=()):
     h, gamma = mpf(h), mpf(gamma)
     d = len(x)
     place = [mpf(y) for y in x]
@@ -109,6 +147,7 @@ def evaluate(nodes, x, gamma, h):
         low, high = min(n[i] for n in nodes), max(n[i] for n in nodes)
         inside = mpf(10) ** -45 * h
         place[i] += inside if x[i] == low else -inside if x[i] == high else 0
+    place = [y + inside * e for y, e in zip(place, inwards)] if inwards else place
     a = [[(place[i] - mpf(n[i])) / h for i in range(d)] for n in nodes]
     lam, p, J = solve(a, gamma)
     Jinv = inverse(J)
@@ -153,6 +192,19 @@ def points():
             yield name, {"far": "2^40 h away"}.get(name, "h = 2^±300"), gamma, [x]
 
 
+def slanted():
+    """The same, and a direction inwards where the point is exactly on the hull."""
+    for name, places in SLANTED.items():
+        for n, (place, inwards) in enumerate(places):
+            length = sqrt(sum(mpf(e) ** 2 for e in inwards))
+            for k in (0.3, 1e-3, 1e-6, 1e-8, 1e-10, 1e-12, 1e-15, 0):
+                if k == 0 and place[0] == 0:
+                    continue  # in a corner the limit depends on the direction
+                x = [float(mpf(y) + mpf(k) * e / length) for y, e in zip(place, inwards)]
+                domain = ("near a slanted side" if k else "on a slanted side")
+                yield name, domain, (0.8, 1.8, 4.0)[n], x, () if k else inwards
+
+
 def pad(values, n=3):
     return list(values) + [""] * (n - len(values))
 
@@ -174,11 +226,11 @@ def main():
         "point,set,domain,gamma,spacing,x,y,z,x_hex,y_hex,z_hex,lambda_x,lambda_y,lambda_z".split(",")
     )
     values_csv.writerow("point,node,N,dN_dx,dN_dy,dN_dz".split(","))
-    for n, (name, domain, gamma, x) in enumerate(points()):
+    for n, (name, domain, gamma, x, *inwards) in enumerate([*points(), *slanted()]):
         nodes, h = SETS[name]
-        lam, p, grads = evaluate(nodes, x, gamma, h)
+        lam, p, grads = evaluate(nodes, x, gamma, h, *inwards)
         digits = lambda y: mp.nstr(y, 25)
-        infinite = domain == "on the hull"
+        infinite = domain.startswith("on ") and domain != "on a node"
         points_csv.writerow(
             [n, name, domain, repr(gamma), repr(h)]
             + pad([repr(float(y)) for y in x])
