@@ -14,6 +14,7 @@ mod extremes;
 mod extremes_of_scenes;
 mod finite;
 mod house;
+mod hull;
 mod integrators;
 mod laws;
 mod lme;

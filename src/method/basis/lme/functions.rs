@@ -7,6 +7,12 @@ use crate::method::continuum::law::{applied, outer};
 use crate::method::cost::Cost;
 use nalgebra::{SMatrix, SVector};
 
+/// The sums of a row are right to this.
+const RIGHT: f64 = 1e-10;
+
+/// Nodes of one layer are as deep as the first, to this: turned axes round.
+const LEVEL: f64 = 1e-12;
+
 /// These are the shape functions at one point, an entry for each node that it sees.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Functions<const D: usize> {
@@ -59,6 +65,32 @@ pub fn evaluate<const D: usize>(
         slopes_inwards(functions, seen, &inverse, d, f)?;
     }
     Ok(())
+}
+
+/// Holds the row against Σ p_I = 1, Σ p_I ξ_I = 0, Σ h∇p_I = 0 and Σ ξ_I ⊗ h∇p_I = −1. With L,
+/// the largest |ξ_I|, the second is divided by L and the third multiplied.
+///
+/// Errors: [`Failure::Inexact`].
+pub fn check<const D: usize>(functions: &Functions<D>, seen: &Seen<D>) -> Result<(), Failure> {
+    let L = seen.size();
+    let (mut one, mut place) = (-1.0, SVector::<f64, D>::zeros());
+    let (mut slope, mut identity) = (SVector::<f64, D>::zeros(), SMatrix::<f64, D, D>::identity());
+    for ((p, grad), xi) in functions.p.iter().zip(&functions.grad).zip(&seen.xi) {
+        one += *p;
+        place += xi * *p;
+        slope += *grad;
+        identity += outer(xi, grad);
+    }
+    // A sum, since that keeps what is no number.
+    let size = |all: &[f64]| all.iter().map(|x| libm::fabs(*x)).sum::<f64>();
+    let error = libm::fabs(one)
+        + size(place.as_slice()) / L
+        + size(slope.as_slice()) * L
+        + size(identity.as_slice());
+    match error <= RIGHT {
+        true => Ok(()),
+        false => Err(Failure::Inexact { error }),
+    }
 }
 
 /// Gives the node on which x lies its weight, and returns S.
@@ -135,7 +167,7 @@ fn next_layer<const D: usize>(
     layer.clear();
     layer.extend((0..xi.len()).filter(|n| behind(&xi[*n])));
     let delta = layer.iter().map(|n| libm::fabs(xi[*n][d])).fold(f64::INFINITY, f64::min);
-    layer.retain(|n| libm::fabs(xi[*n][d]) == delta);
+    layer.retain(|n| libm::fabs(xi[*n][d]) - delta <= LEVEL * delta);
     (delta != f64::INFINITY).then_some(delta)
 }
 // ANCHOR_END: lme_gradients

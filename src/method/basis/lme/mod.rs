@@ -3,7 +3,8 @@
 //! [`plain`] solves the equations as the paper has them, and is read first. The other
 //! files find the same numbers at any γ and place: `seen` holds the nodes of a point, and how
 //! it lies in their hull; `weights` makes p_I at one λ, and their moments; `search` finds λ;
-//! `functions` evaluates all p_I and their gradients.
+//! `functions` evaluates all p_I and their gradients, and checks their sums; `turned` does the
+//! same again along better axes near a slanted side of the hull.
 //!
 //! Nothing here has a unit: with ξ_I = (x − x_I)/h and λ scaled by h, (31) is
 //! p_I ∝ exp(−γ|ξ_I|² + λ·ξ_I), γ = βh². Relative to one node 0 near x, with
@@ -25,6 +26,7 @@ mod functions;
 pub mod plain;
 mod search;
 mod seen;
+mod turned;
 mod weights;
 
 pub use axis::{AxisFunctions, AxisPoint, solve_axis};
@@ -35,6 +37,7 @@ use crate::method::cost::Cost;
 use functions::Functions;
 use nalgebra::SVector;
 use seen::Seen;
+use turned::{Turned, solve, solve_turned};
 use weights::Weights;
 
 /// Local max-ent at one point works with the nodes that it sees and with buffers, which are
@@ -42,6 +45,7 @@ use weights::Weights;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lme<const D: usize> {
     seen: Seen<D>,
+    turned: Turned<D>,
     weights: Weights,
     functions: Functions<D>,
 }
@@ -50,19 +54,13 @@ impl<const D: usize> Lme<D> {
     /// Forgets the nodes of the last point. `on_grid` promises that all offsets
     /// to come are whole numbers.
     pub fn clear(&mut self, on_grid: bool) {
-        self.seen.I.clear();
-        self.seen.xi.clear();
-        self.seen.offset.clear();
-        self.seen.on_grid = on_grid;
+        self.seen.clear(on_grid);
     }
 
     /// Adds node I to those that the point sees: (x − x_I)/h and, for one node b near x,
-    /// (x_b − x_I)/h. A distance along an axis below 1e-150 h is none: its square would
-    /// have no number.
+    /// (x_b − x_I)/h.
     pub fn push(&mut self, I: usize, xi: SVector<f64, D>, offset: SVector<f64, D>) {
-        self.seen.I.push(I);
-        self.seen.xi.push(xi.map(|xi| if libm::fabs(xi) < 1e-150 { 0.0 } else { xi }));
-        self.seen.offset.push(offset);
+        self.seen.push(I, xi, offset);
     }
 
     /// Sets the offset of every node I, where b is known only when all of them are.
@@ -88,10 +86,11 @@ impl<const D: usize> Lme<D> {
 /// (–) and ∇N_I (1/m) of them to the row; returns λ h (–). `h` is the spacing (m).
 ///
 /// `starts` are values of λ h to begin from. The first one near enough is taken, else
-/// the best. A point on a side of the hull that is normal to an axis gets the limit from
-/// inside.
+/// the best. A point on the hull, or outside by no more than rounding, gets the limit from
+/// inside. Where that does not come out right along the given axes, near a slanted side of the
+/// hull, axes that follow the weights are tried.
 ///
-/// Errors: [`Failure`], and nothing written.
+/// Errors: [`Failure`], and nothing written: a row is right, or refused. Tests: `tests/hull.rs`.
 pub fn max_ent_row<const D: usize>(
     shape: &mut Shape<D>,
     lme: &mut Lme<D>,
@@ -99,10 +98,9 @@ pub fn max_ent_row<const D: usize>(
     h: &SVector<f64, D>,
     starts: impl IntoIterator<Item = SVector<f64, D>>,
 ) -> Result<SVector<f64, D>, Failure> {
-    let Lme { seen, weights, functions } = lme;
-    seen::share(seen)?;
-    let lambda = search::find_lambda(weights, seen, gamma, starts)?;
-    functions::evaluate(functions, seen, weights, gamma, &lambda)?;
+    let Lme { seen, turned, weights, functions } = lme;
+    let lambda = solve(functions, weights, seen, gamma, starts)
+        .or_else(|_| solve_turned(turned, functions, weights, seen, gamma))?;
     for ((I, N_I), grad) in seen.I.iter().zip(&functions.p).zip(&functions.grad) {
         shape.push(*I, *N_I, grad.component_div(h));
     }

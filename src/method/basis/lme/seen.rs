@@ -18,6 +18,8 @@ pub struct Seen<const D: usize> {
     pub offset: Vec<SVector<f64, D>>,
     /// All offsets are whole numbers.
     pub on_grid: bool,
+    /// Which of the nodes is node 0, where it is not to be the nearest.
+    pub base: Option<usize>,
     /// The sides of the hull that x lies on.
     pub faces: Faces<D>,
     /// The node on which x lies exactly.
@@ -39,6 +41,7 @@ impl<const D: usize> Default for Seen<D> {
             xi: Vec::new(),
             offset: Vec::new(),
             on_grid: false,
+            base: None,
             faces: [0.0; D],
             on_node: None,
             sharing: Vec::new(),
@@ -46,6 +49,29 @@ impl<const D: usize> Default for Seen<D> {
             a: Vec::new(),
             reach: 0.0,
         }
+    }
+}
+
+impl<const D: usize> Seen<D> {
+    /// Forgets all nodes. `on_grid` promises that all offsets to come are whole numbers.
+    pub fn clear(&mut self, on_grid: bool) {
+        self.I.clear();
+        self.xi.clear();
+        self.offset.clear();
+        (self.on_grid, self.base) = (on_grid, None);
+    }
+
+    /// Adds node I with (x − x_I)/h and its offset. A distance along an axis below 1e-150 h is
+    /// none: its square would have no number.
+    pub fn push(&mut self, I: usize, xi: SVector<f64, D>, offset: SVector<f64, D>) {
+        self.I.push(I);
+        self.xi.push(xi.map(|xi| if libm::fabs(xi) < 1e-150 { 0.0 } else { xi }));
+        self.offset.push(offset);
+    }
+
+    /// Gives the largest |ξ_I| along an axis.
+    pub fn size(&self) -> f64 {
+        self.xi.iter().map(|xi| xi.amax()).fold(0.0, f64::max)
     }
 }
 
@@ -73,8 +99,9 @@ pub fn share<const D: usize>(seen: &mut Seen<D>) -> Result<(), Failure> {
     }
     // On two faces at once x is a corner of the box, which may hold no node.
     let nearest = nearest.ok_or(Failure::OutsideHull)?;
-    seen.xi_0 = xi[nearest];
     seen.on_node = (least == 0.0).then_some(nearest);
+    let nearest = seen.base.filter(|base| sharing.contains(base)).unwrap_or(nearest);
+    seen.xi_0 = xi[nearest];
     if seen.on_node.is_some() {
         sharing.retain(|n| Some(*n) != seen.on_node);
     }
