@@ -19,6 +19,7 @@ use crate::scene::fault::Fault;
 use crate::setup;
 use nalgebra::{SMatrix, SVector};
 
+// ANCHOR: ladder
 /// A ladder is one way to compute the motion on every rung: a grid, or a time step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ladder {
@@ -44,6 +45,8 @@ pub enum Along {
     Spacing,
     TimeStep,
 }
+
+// ANCHOR_END: ladder
 
 /// Of every rung these are the relative errors of velocity, stress and displacement: of all
 /// particles at the end, against the exact solution, or along Δt against a run with an eighth of
