@@ -2,7 +2,7 @@
 
 use crate::support::*;
 use lme_mpm::study::configuration::Template;
-use lme_mpm::study::orders::{self, Ladder, Ascent};
+use lme_mpm::study::orders::{self, Ascent, Ladder};
 use std::fmt::Write;
 use std::path::Path;
 

@@ -5,6 +5,7 @@ use lme_mpm::port::check::{self, Tolerance, compare, ulps};
 use lme_mpm::port::trace::{self, Entry, hex, number, trace_in};
 use lme_mpm::scene::Scene;
 use lme_mpm::scene::fault::Fault;
+use nalgebra::Vector1;
 
 const USUAL: Tolerance = Tolerance { relative: 1e-9, absolute: 1e-12 };
 
@@ -281,6 +282,50 @@ fn trace_means_the_same_with_both_masses() {
             for (I, advanced) in list(k, "p_I_advanced").into_iter().enumerate() {
                 assert_eq!(advanced, p[I] + f[I] * (0.5 * dt), "{mass}, k = {k}, node {}", I + 1);
             }
+        }
+    }
+}
+
+/// With a hyperelastic law a trace has G_p and F_p = (1 + G_p) F_p of the step before, and the
+/// stress of that F, in place of Δε_p; with the rate law and consistent kinematics it has both
+/// G_p and Δε_p = G/(1 + G/2): the bar, every scheme, three time steps.
+#[test]
+fn trace_of_finite_strain() {
+    for scheme in SCHEMES {
+        for (law, kinematics) in
+            [("neo-hookean", "as-printed"), ("neo-hookean", "consistent"), ("rate", "consistent")]
+        {
+            let sets = [
+                &format!("body.law={law}")[..],
+                &format!("time.kinematics={kinematics}"),
+                "grid.cells=4",
+            ];
+            let scene = dyka(&[scheme.sets, &sets].concat());
+            let (entries, state) = trace_in::<1>(&scene, 3).unwrap();
+            let of = |k: usize, symbol: &str| -> Vec<f64> {
+                let own = entries.iter().filter(|e| e.k == k && e.symbol == symbol);
+                own.map(|e| e.value).collect()
+            };
+            let name = format!("{}, {law}, {kinematics}", scheme.name);
+            for k in 1..=3 {
+                let G = of(k, "G_p");
+                assert_eq!(G.len(), 8, "{name}");
+                if law == "rate" {
+                    let d_eps: Vec<f64> = G.iter().map(|G| G / (1.0 + G / 2.0)).collect();
+                    assert!(
+                        apart(&of(k, "d_eps_p"), &d_eps) < 1e-18 && of(k, "F_p").is_empty(),
+                        "{name}"
+                    );
+                    continue;
+                }
+                let before = if k == 1 { vec![1.0; 8] } else { of(k - 1, "F_p") };
+                let F: Vec<f64> = G.iter().zip(&before).map(|(G, F)| (1.0 + G) * F).collect();
+                assert!(of(k, "F_p") == F && of(k, "d_eps_p").is_empty(), "{name}");
+                let law = scene.body.elastic();
+                let sigma = F.iter().map(|F| law.stress_of(&Vector1::new(*F))[0]);
+                assert_eq!(of(k, "sigma_p"), sigma.collect::<Vec<_>>(), "{name}");
+            }
+            assert!(state.particle.sigma.iter().any(|sigma| sigma[0].abs() > 1e5), "{name}");
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
-use crate::method::continuum::state::Nodes;
+use crate::method::continuum::state::{Nodes, Particles};
 use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
+use crate::method::reading::Kinematics;
 use crate::run::table;
 use crate::scene::fault::Fault;
 use nalgebra::{SMatrix, SVector};
@@ -42,7 +43,7 @@ pub const COLUMNS: [&str; 7] = ["k", "step", "symbol", "index", "node", "compone
 
 /// Symbols stand in the paper's order, each with its equation or what it is, and its place in
 /// the book.
-pub const SYMBOLS: [(&str, &str, &str); 29] = [
+pub const SYMBOLS: [(&str, &str, &str); 31] = [
     ("dt", "T/n", "algorithm.html#time-step"),
     ("N_Ip", "(31) or the basis at hand", "basis.html"),
     ("grad_N_Ip", "(35) or the basis at hand", "basis.html"),
@@ -51,7 +52,9 @@ pub const SYMBOLS: [(&str, &str, &str); 29] = [
     ("p_I", "the mapped momentum", "weak-form.html"),
     ("v_I", "the velocity of the nodes", "weak-form.html"),
     ("a_I", "(26) mapped", "time-integration.html#eq-26"),
+    ("G_p", "the gradient of a step's displacement", "finite-strain.html"),
     ("d_eps_p", "(16)", "weak-form.html#eq-16"),
+    ("F_p", "the deformation gradient", "finite-strain.html"),
     ("rho_p", "(17)", "weak-form.html#eq-17"),
     ("sigma_p", "(3)", "governing-equations.html#eq-3"),
     ("f_int_I", "(14)", "weak-form.html#eq-14"),
@@ -143,11 +146,36 @@ impl TraceRecorder {
                     self.vectors(symbol, &own.f);
                 }
             }
-            "d_eps_p" => self.tensors(symbol, &particle.d_eps),
+            "G_p" | "d_eps_p" | "d_eps_p_printed" | "d_eps_p_of_map" => {
+                self.strain(symbol, particle, model);
+            }
+            "F_p" => self.tensors(symbol, &particle.F),
             "rho_p" => self.numbers(symbol, &particle.rho),
             "sigma_p" => self.tensors(symbol, &particle.sigma),
             "x_p" => self.vectors(symbol, &particle.x),
             _ => self.vectors("v_p", &particle.v),
+        }
+    }
+
+    /// Writes what the material is strained by: Δε_p, unless the law is hyperelastic, and G_p
+    /// where it says more. Newmark's method makes Δε_p in step 5 as printed, and in step 6 from
+    /// the map.
+    fn strain<const D: usize>(
+        &mut self,
+        symbol: &'static str,
+        particle: &Particles<D>,
+        model: &Model<D>,
+    ) {
+        let rate = !model.law.law.is_hyperelastic();
+        let of_map = model.kinematics == Kinematics::Consistent;
+        let (wanted, name, list) = match symbol {
+            "G_p" => (!rate || of_map, symbol, &particle.G),
+            "d_eps_p_printed" => (rate && !of_map, "d_eps_p", &particle.d_eps),
+            "d_eps_p_of_map" => (rate && of_map, "d_eps_p", &particle.d_eps),
+            _ => (rate, symbol, &particle.d_eps),
+        };
+        if wanted {
+            self.tensors(name, list);
         }
     }
 

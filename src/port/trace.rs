@@ -7,7 +7,7 @@
 use crate::method::breakdown::{BrokenDown, Moment};
 use crate::method::choice::{Integrator, Method};
 use crate::method::model::State;
-use crate::method::reading::StressUpdate;
+use crate::method::reading::{Kinematics, StressUpdate};
 use crate::method::time;
 use crate::scene::Scene;
 use crate::scene::fault::Fault;
@@ -70,7 +70,7 @@ pub fn trace_in<const D: usize>(
         };
         let mut after = |n: usize, state: &State<D>| {
             recorder.at(k, n);
-            for symbol in made_by(model.method, n) {
+            for symbol in made_by(model.method, model.kinematics, n) {
                 recorder.symbol(symbol, state, &model, loads_at);
             }
         };
@@ -86,15 +86,17 @@ pub fn trace_in<const D: usize>(
 
 /// Lists the symbols that step `n` of a method makes, in the paper's order: one table, which is
 /// why this function is long.
-fn made_by(method: Method, n: usize) -> &'static [&'static str] {
+fn made_by(method: Method, kinematics: Kinematics, n: usize) -> &'static [&'static str] {
     const NONE: &[&str] = &[];
     const TABLE: &[&str] = &["N_Ip", "grad_N_Ip", "lambda"];
     const MAPPED: &[&str] = &["m_I", "p_I"];
     const FORCES: &[&str] = &["f_int_I", "f_ext_I", "f_I"];
     const ADVANCED: &[&str] = &["p_I_advanced"];
     const MOVED: &[&str] = &["v_p", "x_p"];
-    const MATERIAL: &[&str] = &["d_eps_p", "rho_p", "sigma_p"];
-    const STRAINED: &[&str] = &["v_I", "d_eps_p", "rho_p", "sigma_p"];
+    const MATERIAL: &[&str] = &["G_p", "d_eps_p", "F_p", "rho_p", "sigma_p"];
+    const STRAINED: &[&str] = &["v_I", "G_p", "d_eps_p", "F_p", "rho_p", "sigma_p"];
+    const STRAINED_LAST: &[&[&str]] =
+        &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, MATERIAL];
     let steps: &[&[&str]] = match method {
         Method::Otm => &[
             &["m_I", "v_I"],
@@ -113,18 +115,21 @@ fn made_by(method: Method, n: usize) -> &'static [&'static str] {
                 TABLE,
                 MAPPED,
                 &["v_I"],
-                &["d_eps_p"],
-                &["rho_p", "sigma_p"],
+                &["G_p", "d_eps_p_printed"],
+                &["d_eps_p_of_map", "F_p", "rho_p", "sigma_p"],
                 FORCES,
                 ADVANCED,
                 &["v_p"],
             ],
+            Integrator::ForwardEuler(_) | Integrator::CorrectedEuler
+                if kinematics == Kinematics::Consistent =>
+            {
+                STRAINED_LAST
+            }
             Integrator::ForwardEuler(StressUpdate::First) => {
                 &[NONE, TABLE, MAPPED, STRAINED, FORCES, ADVANCED, MOVED, NONE]
             }
-            Integrator::ForwardEuler(StressUpdate::Last) => {
-                &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, MATERIAL]
-            }
+            Integrator::ForwardEuler(StressUpdate::Last) => STRAINED_LAST,
             Integrator::ForwardEuler(StressUpdate::ModifiedLast) | Integrator::CorrectedEuler => {
                 &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, STRAINED]
             }
