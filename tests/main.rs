@@ -42,3 +42,4 @@ mod studies;
 mod support;
 mod table;
 mod trace;
+mod watch;

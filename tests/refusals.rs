@@ -424,6 +424,24 @@ fn breakdown_blows_up() {
     assert!(!dir.join("o/history.failed.csv").exists());
 }
 
+/// A flight whose limit falls below its Δt as the particles move stops by name, with exit
+/// code 1, and leaves nothing but the history up to there; with `time.watch = 0` nothing
+/// looks.
+#[test]
+fn breakdown_beyond_the_limit() {
+    let dir = directory("beyond-the-limit");
+    let sets = "--set time.cfl=1.6 --set time.end=1 --set grid.particles_per_cell=1 \
+                --set initial_velocity.0.velocity=0.3";
+    let sets: Vec<&str> = sets.split_whitespace().collect();
+    let output = program(&dir, &[&["run", FLIGHT, "--out", "o"][..], &sets].concat());
+    let words = ["at step ", "t = ", "particle ", "beyond its limit", "time.fraction_of_critical"];
+    assert_fails(&output, 1, &words);
+    assert_eq!(files(&dir.join("o")), ["history.failed.csv"]);
+    let off = ["--set", "time.watch=0"];
+    let output = program(&dir, &[&["run", FLIGHT, "--out", "o"][..], &sets, &off].concat());
+    assert_fails(&output, 1, &["the run blew up"]);
+}
+
 /// Recorded seldom, the blow-up is still caught, by the particle.
 #[test]
 fn breakdown_between_records() {

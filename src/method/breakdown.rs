@@ -64,6 +64,28 @@ pub enum Breakdown {
          particle {particle} holds the largest share"
     )]
     Diverged { particle: usize, ratio: f64 },
+    #[error(
+        "the time step {dt:e} s is beyond its limit, which was {start:e} s at the start and is {now:e} \
+         s where the particles stand now; what grows has its largest share in particle {particle}; \
+         time.fraction_of_critical = {} would have held so far",
+        shown(*fraction)
+    )]
+    BeyondLimit { particle: usize, dt: f64, start: f64, now: f64, fraction: f64 },
+    #[error(
+        "the energy has grown by {share:.2e} of what start and loads gave, with a time step of {} of \
+         the limit over all offsets: it is too large for what it computes, and particle {particle} \
+         holds the largest share",
+        shown(*part)
+    )]
+    Gained { particle: usize, share: f64, part: f64 },
+}
+
+/// Writes a fraction with three digits, rounded down.
+fn shown(fraction: f64) -> String {
+    if fraction < 0.01 {
+        return format!("{fraction:.0e}");
+    }
+    format!("{}", libm::floor(fraction * 1000.0) / 1000.0)
 }
 
 impl Breakdown {

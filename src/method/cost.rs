@@ -28,18 +28,21 @@ pub struct Cost {
     pub solves: u64,
     /// Nodes looked at in the search for neighbours.
     pub candidates: u64,
+    /// Passes over all particles by the watch on the limit of Δt: tables, bounds, and
+    /// applications of the operator.
+    pub limit_applications: u64,
     /// Bytes of state that one particle carries.
     pub bytes_per_particle: u64,
 }
 
 impl Cost {
     /// Lists every counter with its name, in the order of `cost.csv`.
-    pub fn named(mut self) -> [(&'static str, u64); 11] {
+    pub fn named(mut self) -> [(&'static str, u64); 12] {
         self.places().map(|(name, count)| (name, *count))
     }
 
     /// Lists every counter with its name, to be set.
-    pub fn places(&mut self) -> [(&'static str, &mut u64); 11] {
+    pub fn places(&mut self) -> [(&'static str, &mut u64); 12] {
         [
             ("steps", &mut self.steps),
             ("basis_evaluations", &mut self.basis_evaluations),
@@ -51,6 +54,7 @@ impl Cost {
             ("factorizations", &mut self.factorizations),
             ("solves", &mut self.solves),
             ("candidates", &mut self.candidates),
+            ("limit_applications", &mut self.limit_applications),
             ("bytes_per_particle", &mut self.bytes_per_particle),
         ]
     }

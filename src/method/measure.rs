@@ -86,6 +86,15 @@ pub fn strain_energy<const D: usize>(particle: &Particles<D>, law: &Elastic) -> 
 }
 // ANCHOR_END: energy
 
+/// Finds the particle with the most kinetic and strain energy.
+pub fn most_energetic<const D: usize>(particle: &Particles<D>, law: &Elastic) -> usize {
+    let energy = |p: usize| {
+        let v: SVector<f64, D> = particle.v[p];
+        0.5 * particle.m[p] * v.dot(&v) + strain_energy_of(particle, law, p)
+    };
+    (0..particle.len()).max_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap_or(0)
+}
+
 /// Sums m (x_i v_j − x_j v_i) about the body's lower corner (kg m²/s): one
 /// number in 2D, three in 3D (for x, y, z), none in 1D.
 pub fn angular_momentum<const D: usize>(Carriers { m, x, v }: &Carriers<D>) -> Vec<f64> {

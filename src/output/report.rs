@@ -6,7 +6,7 @@ use super::summary::{self, SummaryLine};
 use super::{figure, vtk};
 use crate::method::breakdown::Breakdown;
 use crate::method::choice::Mass;
-use crate::run::stability;
+use crate::run::stability::{self, Critical};
 use crate::run::table::{csv, shortest};
 use crate::run::{Stopped, run};
 use crate::scene::Scene;
@@ -30,20 +30,21 @@ const SERIES: &str = "particles.pvd";
 /// Every complete run leaves these files, besides one SVG for each probe.
 const FILES: [&str; 4] = ["history.csv", "particles.csv", "summary.csv", "cost.csv"];
 
-/// Gives the predicted limit of Δt (s); `None` where it cannot be predicted, and the scene
+/// Gives the predicted limit of Δt; `None` where it cannot be predicted, and the scene
 /// breaks down by its own name.
 ///
-/// Errors: [`Fault::Unstable`] for a scene whose Δt is above it, unless it allows that.
-pub fn stable(scene: &Scene) -> Result<Option<f64>, Fault> {
-    let Ok(limit) = stability::predicted(scene, 0.0) else {
+/// Errors: [`Fault::Unstable`] for a scene whose Δt is above that of its start, unless it
+/// allows that.
+pub fn stable(scene: &Scene) -> Result<Option<Critical>, Fault> {
+    let Ok(limit) = stability::critical(scene) else {
         return Ok(None);
     };
-    if scene.time.end / scene.sizes().2 <= limit * CERTAIN || scene.time.allow_unstable {
+    if scene.time.end / scene.sizes().2 <= limit.start * CERTAIN || scene.time.allow_unstable {
         return Ok(Some(limit));
     }
     Err(Fault::Unstable {
         courant: scene.courant_number(),
-        largest: scene.courant_number_of(limit),
+        largest: scene.courant_number_of(limit.used()),
         singular: scene.mass == Mass::Consistent && scene.grid.particles_per_cell.contains(&1),
     })
 }
@@ -71,9 +72,8 @@ pub fn run_into(
         Err(stopped) => return Err(broken(dir, scene, *stopped)?),
     };
     let mut lines = summary::lines(scene, &outcome, start.elapsed().as_secs_f64());
-    if let Some(limit) = limit.map(|limit| limit.min(f64::MAX)) {
-        lines.push(SummaryLine::new("critical_time_step", limit, "s"));
-        lines.push(SummaryLine::new("fraction_of_critical", outcome.dt / limit, "1"));
+    if let Some(limit) = limit {
+        lines.extend(summary::limit_lines(&limit, outcome.dt));
     }
     let cost = summary::cost_lines(&outcome.cost);
     let mut files = vec![
@@ -106,6 +106,11 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
         Breakdown::ReachesBeyond { .. }
         | Breakdown::NoBasis { .. }
         | Breakdown::SingularMass { .. } => String::new(),
+        Breakdown::BeyondLimit { .. } | Breakdown::Gained { .. } => {
+            "give the time step as a part of the limit with \
+             time.fraction_of_critical, or a smaller time.cfl; "
+                .to_string()
+        }
         Breakdown::LeftGrid { .. } | Breakdown::NotFinite { .. } if courant <= 1.0 => String::new(),
         _ if scene.mass == Mass::Consistent => format!(
             "the Courant number c Δt / h is {courant:.3}: try a smaller time.cfl, or more \

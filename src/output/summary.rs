@@ -5,6 +5,7 @@ use crate::method::exact::mode::Mode;
 use crate::method::measure::rms;
 use crate::run::Outcome;
 use crate::run::columns::{of_stress, per_axis, upper_half};
+use crate::run::stability::Critical;
 use crate::scene::{Motion, Probe, Quantity, Scene, wave_speed};
 use crate::setup;
 
@@ -103,6 +104,18 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<SummaryLin
     lines.push(SummaryLine::new("time_step", outcome.dt, "s"));
     lines.push(SummaryLine::new("courant_number", scene.courant_number(), "1"));
     lines.push(SummaryLine::new("wall_time", wall_time, "s"));
+    lines
+}
+
+/// Gives the predicted limit of Δt, and the part of it that `dt` (s) is: of the limit over all
+/// offsets where particles move, and else of that at the start.
+pub fn limit_lines(limit: &Critical, dt: f64) -> Vec<SummaryLine> {
+    let finite = |limit: f64| limit.min(f64::MAX);
+    let mut lines = vec![SummaryLine::new("critical_time_step", finite(limit.start), "s")];
+    if let Some(least) = limit.over_offsets {
+        lines.push(SummaryLine::new("critical_time_step_over_offsets", finite(least), "s"));
+    }
+    lines.push(SummaryLine::new("fraction_of_critical", dt / finite(limit.used()), "1"));
     lines
 }
 

@@ -17,11 +17,12 @@ use crate::method::time;
 use crate::scene::Scene;
 use crate::setup;
 use recorder::Recorder;
+use stability::Watch;
 
 /// Runs a scene to its end; `progress` hears the number of every finished step.
 ///
-/// A time step beyond the limit is run as well, and blows up; the limit is known beforehand
-/// from [`stability::predicted`].
+/// A time step beyond the limit is run as well; the limit is known beforehand from
+/// [`stability::critical`]. What grows is stopped by the watch, or blows up.
 ///
 /// Errors: [`Stopped`] when the run breaks down.
 pub fn run(scene: &Scene, progress: &mut dyn FnMut(usize)) -> Result<Outcome, Box<Stopped>> {
@@ -39,6 +40,7 @@ fn run_in<const D: usize>(
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
     let mut recorder = Recorder::new(scene, &model, &state);
+    let mut watch = Watch::new(scene, &model, &state);
     let mut march = || -> Result<(), BrokenDown> {
         let start = Moment::START;
         time::start(&mut state, &model, &mut |_, _| {}).map_err(|what| what.at(start))?;
@@ -47,6 +49,10 @@ fn run_in<const D: usize>(
             let moment = Moment::of(step, model.dt);
             time::advance(&mut state, &model, moment.time, &mut |_, _| {})
                 .and_then(|()| recorder.follow(&state, moment))
+                .and_then(|()| match &mut watch {
+                    Some(watch) => watch.follow(&state, moment, &|| recorder.balance(&state)),
+                    None => Ok(()),
+                })
                 .map_err(|what| what.at(moment))?;
             progress(step);
         }
@@ -57,11 +63,12 @@ fn run_in<const D: usize>(
     }
     let end = Moment::of(model.steps, model.dt);
     let bytes_per_particle = model.bytes_per_particle() as u64;
+    let limit_applications = watch.map_or(0, |watch| watch.applications);
     Ok(Outcome {
         particles: recorder.particles(&state, end.time),
         frames: recorder.frames,
         history: recorder.history,
-        cost: Cost { bytes_per_particle, ..state.cost() },
+        cost: Cost { bytes_per_particle, limit_applications, ..state.cost() },
         dt: model.dt,
     })
 }

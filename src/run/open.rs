@@ -21,9 +21,9 @@ pub fn parse(
         return Ok(scene);
     };
     let key = "time.fraction_of_critical";
-    let limit = stability::predicted(&scene, 0.0)
+    let limit = stability::critical(&scene)
         .map_err(|breakdown| declared.error(key, breakdown.to_string()))?;
-    let courant = scene.courant_number_of(limit * fraction);
+    let courant = scene.courant_number_of(limit.used() * fraction);
     scene.time.cfl = scene.time.cfl.min(courant);
     if scene.time.cfl.is_infinite() {
         return Err(declared.error(key, "nothing strains this body: there is no limit"));

@@ -3,9 +3,9 @@
 use super::columns::per_axis;
 use super::outcome::Frame;
 use super::particles;
+use super::stability::Balance;
 use super::table::Table;
 use crate::method::breakdown::{Breakdown, Moment};
-use crate::method::continuum::state::Particles;
 use crate::method::exact::Exact;
 use crate::method::measure;
 use crate::method::model::{Model, State};
@@ -94,6 +94,14 @@ impl<'a, const D: usize> Recorder<'a, D> {
         Ok(())
     }
 
+    /// Gives the energy of `state` beside what was put in.
+    pub fn balance(&self, state: &State<D>) -> Balance {
+        let kinetic = measure::kinetic_energy(&state.carriers(self.model.method));
+        let strain = measure::strain_energy(&state.particle, &self.model.law);
+        let (sum, moved) = self.work.as_ref().map_or((0.0, 0.0), |work| (work.sum, work.moved));
+        Balance { gained: kinetic + strain - self.energy - sum, given: self.energy + moved }
+    }
+
     /// Records the state at `moment`.
     ///
     /// Errors: [`Breakdown::NotFinite`], [`Breakdown::Diverged`] by its energy.
@@ -102,7 +110,7 @@ impl<'a, const D: usize> Recorder<'a, D> {
         let kinetic = measure::kinetic_energy(&state.carriers(self.model.method));
         let strain = measure::strain_energy(particle, &self.model.law);
         if !(kinetic + strain).is_finite() {
-            let particle = most_energetic(particle, self.model);
+            let particle = measure::most_energetic(particle, &self.model.law);
             return Err(Breakdown::NotFinite { particle, symbol: "energy" });
         }
         if moment.step == 0 {
@@ -111,7 +119,7 @@ impl<'a, const D: usize> Recorder<'a, D> {
         let available = self.energy + self.work.as_ref().map_or(0.0, |work| work.moved);
         if available > 0.0 && kinetic + strain > BLOW_UP * available {
             return Err(Breakdown::Diverged {
-                particle: most_energetic(particle, self.model),
+                particle: measure::most_energetic(particle, &self.model.law),
                 ratio: (kinetic + strain) / available,
             });
         }
@@ -184,12 +192,4 @@ fn nearest<const D: usize>(x: &[SVector<f64, D>], position: &SVector<f64, D>) ->
         }
     }
     best
-}
-
-fn most_energetic<const D: usize>(particle: &Particles<D>, model: &Model<D>) -> usize {
-    let energy = |p: usize| {
-        let v: SVector<f64, D> = particle.v[p];
-        0.5 * particle.m[p] * v.dot(&v) + measure::strain_energy_of(particle, &model.law, p)
-    };
-    (0..particle.len()).max_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap_or(0)
 }

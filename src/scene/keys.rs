@@ -175,13 +175,19 @@ pub const KEYS: &[Key] = &[
         "time.fraction_of_critical",
         One(positive("")),
         Without::Says("time.cfl bounds it"),
-        "The largest Δt, as a part of the limit that is predicted at the start",
+        "The largest Δt, as a part of the limit that is predicted, over all offsets if particles move",
     ),
     may(
         "time.allow_unstable",
         Flag,
         Without::Flag(false),
-        "Run what the predicted limit says must blow up",
+        "Run what the predicted limit says must blow up, without a watch",
+    ),
+    may(
+        "time.watch",
+        One(between(Included(0.0), Included(1.0))),
+        Without::Number(0.25),
+        "The cells that particles may move until the limit of Δt is looked at again; 0 for no watch",
     ),
     must("time.end", One(positive("s")), "The end of the run"),
     may("boundary", Table, Without::Says("free sides"), "The sides of the box")

@@ -19,6 +19,7 @@ mod scheme;
 mod shipped;
 mod sizes;
 mod source;
+mod travel;
 mod values;
 
 pub use parts::*;

@@ -81,10 +81,13 @@ pub struct GridSpec {
 pub struct Time {
     /// The largest Courant number c Δt / h; infinite where only the next bounds it.
     pub cfl: f64,
-    /// The largest Δt, as a part of the limit that is predicted at the start.
+    /// The largest Δt, as a part of the predicted limit.
     pub fraction_of_critical: Option<f64>,
     /// Run even if the predicted limit of Δt says that it must blow up.
     pub allow_unstable: bool,
+    /// Particles may move so many cells until the limit of Δt is looked at again; 0 for no
+    /// watch.
+    pub watch: f64,
     /// The end of the run (s).
     pub end: f64,
 }

@@ -23,6 +23,7 @@ pub fn time(values: &Values) -> Result<Time, Box<SceneError>> {
         cfl: cfl.unwrap_or(f64::INFINITY),
         fraction_of_critical: fraction,
         allow_unstable: values.flag("time.allow_unstable")?,
+        watch: values.number("time.watch")?,
         end: values.number("time.end")?,
     })
 }

@@ -163,7 +163,7 @@ fn configuration(
     let Ok(scene) = template.scene(&with(0.5)?) else {
         return Ok(None);
     };
-    match stability::predicted(&scene, 0.0).map(|limit| scene.courant_number_of(limit)) {
+    match stability::critical(&scene).map(|limit| scene.courant_number_of(limit.used())) {
         Ok(limit) if limit.is_finite() => {
             // Two digits are enough, and the configuration is short.
             let cfl = libm::floor(part * limit * 100.0) / 100.0;
