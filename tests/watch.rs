@@ -101,6 +101,10 @@ fn watch_stops_in_time() {
             add(&name, &flight(&[scheme.sets, &[cfl]].concat()), 0.3);
         }
     }
+    for cfl in ["time.cfl=0.5", "time.cfl=0.2"] {
+        let sets = ["time.kinematics=consistent", cfl];
+        add("flight; newmark; consistent kinematics", &flight(&sets), 0.3);
+    }
     let discs = [BSPLINE.sets, CONSISTENT.sets, &["time.end=1.5"]].concat();
     for cfl in ["time.cfl=0.4538", "time.cfl=0.3241", "time.cfl=0.2303"] {
         let scene = scene(DISCS, &[&discs[..], &[cfl]].concat());

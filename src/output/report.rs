@@ -8,7 +8,7 @@ use crate::method::breakdown::Breakdown;
 use crate::method::choice::Mass;
 use crate::run::stability::{self, Critical};
 use crate::run::table::{csv, shortest};
-use crate::run::{Stopped, run};
+use crate::run::{Stopped, run_knowing};
 use crate::scene::Scene;
 use crate::scene::fault::Fault;
 use std::path::Path;
@@ -67,7 +67,7 @@ pub fn run_into(
     prepare(dir)?;
     free_names(dir, scene)?;
     let start = Instant::now();
-    let outcome = match run(scene, progress) {
+    let outcome = match run_knowing(scene, limit, progress) {
         Ok(outcome) => outcome,
         Err(stopped) => return Err(broken(dir, scene, *stopped)?),
     };

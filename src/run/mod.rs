@@ -17,7 +17,7 @@ use crate::method::time;
 use crate::scene::Scene;
 use crate::setup;
 use recorder::Recorder;
-use stability::Watch;
+use stability::{Critical, Watch};
 
 /// Runs a scene to its end; `progress` hears the number of every finished step.
 ///
@@ -26,21 +26,34 @@ use stability::Watch;
 ///
 /// Errors: [`Stopped`] when the run breaks down.
 pub fn run(scene: &Scene, progress: &mut dyn FnMut(usize)) -> Result<Outcome, Box<Stopped>> {
+    run_knowing(scene, None, progress)
+}
+
+/// Runs a scene of which the limit of Δt may be known, so that the watch need not predict it
+/// again.
+///
+/// Errors: [`Stopped`] when the run breaks down.
+pub fn run_knowing(
+    scene: &Scene,
+    limit: Option<Critical>,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Outcome, Box<Stopped>> {
     match scene.dimension() {
-        1 => run_in::<1>(scene, progress),
-        2 => run_in::<2>(scene, progress),
-        _ => run_in::<3>(scene, progress),
+        1 => run_in::<1>(scene, limit, progress),
+        2 => run_in::<2>(scene, limit, progress),
+        _ => run_in::<3>(scene, limit, progress),
     }
 }
 
 fn run_in<const D: usize>(
     scene: &Scene,
+    limit: Option<Critical>,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Outcome, Box<Stopped>> {
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
     let mut recorder = Recorder::new(scene, &model, &state);
-    let mut watch = Watch::new(scene, &model, &state);
+    let mut watch = Watch::new(scene, &model, &state, limit);
     let mut march = || -> Result<(), BrokenDown> {
         let start = Moment::START;
         time::start(&mut state, &model, &mut |_, _| {}).map_err(|what| what.at(start))?;

@@ -116,10 +116,13 @@ impl<'a, const D: usize> Operator<'a, D> {
         let State { node, particle, shape, .. } = &*self.state;
         let mut q = vec![SVector::zeros(); node.len()];
         for p in 0..particle.len() {
-            let v_p = sums::interpolate(u, shape, p);
-            for (I, N_Ip, _) in shape.of(p) {
-                q[I] += v_p * (particle.m[p] * N_Ip);
-            }
+            let p_p = sums::interpolate(u, shape, p) * particle.m[p];
+            shape.lines(p, |line| {
+                let p_line = p_p * line.share;
+                for (q_I, factor) in q[line.nodes()].iter_mut().zip(line.factors) {
+                    *q_I += p_line * factor.N;
+                }
+            });
         }
         q
     }
@@ -183,8 +186,13 @@ impl<'a, const D: usize> Operator<'a, D> {
         let along = |phi: f64| SVector::<f64, D>::from_fn(|i, _| if i == 0 { phi } else { 0.0 });
         let State { node, particle, shape, .. } = &*self.state;
         let mut phi: Field<D> = vec![SVector::zeros(); node.len()];
-        for (I, p, _, grad_N_Ip) in shape.pairs() {
-            phi[I] += along(self.volume(p) * libm::sqrt(grad_N_Ip.dot(&grad_N_Ip)));
+        for p in 0..particle.len() {
+            let V_p = self.volume(p);
+            shape.lines(p, |line| {
+                for (I, _, grad_N_Ip) in line.entries() {
+                    phi[I] += along(V_p * libm::sqrt(grad_N_Ip.dot(&grad_N_Ip)));
+                }
+            });
         }
         let divide = |q: &mut Field<D>| {
             for I in 0..q.len() {
@@ -196,11 +204,17 @@ impl<'a, const D: usize> Operator<'a, D> {
             phi = self.mapped(&phi);
             divide(&mut phi);
         }
-        let mut growth = vec![0.0; particle.len()];
-        for (I, p, _, grad_N_Ip) in shape.pairs() {
-            growth[p] += phi[I][0] * libm::sqrt(grad_N_Ip.dot(&grad_N_Ip));
+        let mut largest: f64 = 0.0;
+        for p in 0..particle.len() {
+            let mut growth = 0.0;
+            shape.lines(p, |line| {
+                for (I, _, grad_N_Ip) in line.entries() {
+                    growth += phi[I][0] * libm::sqrt(grad_N_Ip.dot(&grad_N_Ip));
+                }
+            });
+            largest = largest.max(growth);
         }
-        Some(growth.into_iter().fold(0.0, f64::max) * shear.max(bulk) * factor)
+        Some(largest * shear.max(bulk) * factor)
     }
     // ANCHOR_END: bound
 }

@@ -4,7 +4,7 @@ use super::factor::OfScheme;
 use super::lanczos::{Tridiagonal, dot};
 use super::noise::noise;
 use super::operator::{Operator, Stress};
-use super::predict;
+use super::predict::{self, Critical};
 use crate::method::breakdown::{Breakdown, Moment};
 use crate::method::choice::{Integrator, Method};
 use crate::method::continuum::law::symmetric_part;
@@ -65,8 +65,8 @@ pub struct Watch<'a, const D: usize> {
     gained: Option<f64>,
     /// The lowest limit so far (s).
     lowest: f64,
-    /// The part of the predicted limit that Δt is, once that was asked for.
-    part: Option<f64>,
+    /// The predicted limit, once that was asked for; `None` in it where there is none.
+    predicted: Option<Option<Critical>>,
     /// The particles may move so far until the next look (cells).
     spacing: f64,
     /// The next look comes with this step at the latest.
@@ -77,7 +77,13 @@ pub struct Watch<'a, const D: usize> {
 
 impl<'a, const D: usize> Watch<'a, D> {
     /// Makes the watch of a run that begins with `state`; `None` for a scene that wants none.
-    pub fn new(scene: &'a Scene, model: &'a Model<D>, state: &State<D>) -> Option<Self> {
+    /// The predicted `limit` is found when first asked for, unless it is known.
+    pub fn new(
+        scene: &'a Scene,
+        model: &'a Model<D>,
+        state: &State<D>,
+        limit: Option<Critical>,
+    ) -> Option<Self> {
         if scene.time.watch == 0.0 || scene.time.allow_unstable {
             return None;
         }
@@ -90,7 +96,7 @@ impl<'a, const D: usize> Watch<'a, D> {
                 .fears_light_nodes(&model.basis),
             gained: None,
             lowest: f64::INFINITY,
-            part: None,
+            predicted: limit.map(Some),
             spacing: CLOSEST * scene.time.watch,
             due: usize::MAX,
             applications: 0,
@@ -148,14 +154,17 @@ impl<'a, const D: usize> Watch<'a, D> {
         balance.gained - gained > JUMP * balance.given
     }
 
+    /// Gives the predicted limit, found when first asked for.
+    fn predicted(&mut self) -> Option<Critical> {
+        let scene = self.scene;
+        *self.predicted.get_or_insert_with(|| predict::critical(scene).ok())
+    }
+
     /// Gives the part of the predicted limit over all offsets that Δt is; 0 for a scene that
-    /// does not move. It is found when first asked for.
+    /// does not move.
     fn part(&mut self) -> f64 {
-        let (scene, dt) = (self.scene, self.model.dt);
-        *self.part.get_or_insert_with(|| {
-            let limit = predict::critical(scene).ok().and_then(|critical| critical.over_offsets);
-            limit.map_or(0.0, |limit| dt / limit)
-        })
+        let limit = self.predicted().and_then(|critical| critical.over_offsets);
+        limit.map_or(0.0, |limit| self.model.dt / limit)
     }
 
     /// Gives how far a particle has come since the last look, in cells along an axis.
@@ -284,7 +293,7 @@ impl<'a, const D: usize> Watch<'a, D> {
 
     /// Says by name that Δt is beyond the limit.
     fn stop(&mut self, state: &State<D>, limit: f64) -> Breakdown {
-        let predicted = predict::critical(self.scene).ok();
+        let predicted = self.predicted();
         let start = predicted.map_or(limit, |critical| critical.start);
         let used = predicted.map_or(limit, |critical| critical.used());
         Breakdown::BeyondLimit {
