@@ -277,7 +277,7 @@ fn studies_as_commands() {
     let output = program(&dir, &["trade", "--row", "method=mpm"]);
     assert_fails(&output, 2, &["basis.kind: this key is missing"]);
     let output = program(&dir, &["trade", "--merge", &parts[0], "--out", "p"]);
-    assert_fails(&output, 2, &["log", "another scene"]);
+    assert_fails(&output, 2, &["0.csv, line 2", "another scene"]);
     let output = program(&dir, &["recommend", vibration, "--error", "0"]);
     assert_fails(&output, 2, &["--error", "above 0"]);
     let discs = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/colliding-discs.toml");
@@ -362,7 +362,24 @@ fn recommended_scene_reaches_the_error() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     let printed = text(&output.stdout);
     assert!(printed.contains("For a displacement error of at most 4%"), "{printed}");
-    assert!(printed.contains("\n> ") && printed.contains("ready to run"), "{printed}");
+    for words in [
+        "> cheapest ",
+        " neighbours ",
+        "beside it, the cheapest of each kind:\n fewest pairs ",
+        "\n          mpm ",
+        "\n          otm ",
+        "\nfinite elements ",
+        "grids of fewer than 4 cells are left out (one to a patch of initial velocity",
+        "ready to run: lme-mpm run o/recommended.toml",
+    ] {
+        assert!(printed.contains(words), "{words}: {printed}");
+    }
+    let robust = printed.contains("robust.toml");
+    let written = files(&dir.join("o"));
+    assert!(written.contains(&"neighbours.csv".to_string()), "{written:?}");
+    assert_eq!(written.contains(&"robust.toml".to_string()), robust);
+    let neighbours = fs::read_to_string(dir.join("o/neighbours.csv")).unwrap();
+    assert!(neighbours.contains(",grid.cells=") && neighbours.lines().count() > 4, "{neighbours}");
     let output = program(&dir, &["run", "o/recommended.toml", "--out", "r"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let summary = fs::read_to_string(dir.join("r/summary.csv")).unwrap();
@@ -371,4 +388,5 @@ fn recommended_scene_reaches_the_error() {
     assert!(line.split(',').nth(1).unwrap().parse::<f64>().unwrap() <= 0.04, "{line}");
     let output = ask("0.00001%");
     assert_fails(&output, 2, &["no configuration measured", "displacement", "the best has"]);
+    assert!(!files(&dir.join("o")).iter().any(|name| name.ends_with(".toml")));
 }

@@ -552,7 +552,32 @@ fn merged_logs_are_whole() {
         let merged = program(&dir, &["trade", "--merge", "log.csv", "--out", "out"]);
         assert_fails(&merged, 2, &[&["log.csv"], words].concat());
     }
-    assert_eq!(files(&dir), ["log.csv"]);
+    // The same row twice, in one log or in two; a log of another scene after one of this.
+    let lines: Vec<&str> = log.lines().collect();
+    let foreign = log.replace(lines[1].split(',').next().unwrap(), "0123456789abcdef");
+    fs::write(dir.join("log.csv"), &log).unwrap();
+    for (other, words) in [
+        (log.clone(), &["other.csv, line 2", "a second time"][..]),
+        (format!("{}\n{}\n", lines[0], lines[3]), &["other.csv, line 2", "a second time"]),
+        (format!("{}\n{}\n", lines[0], lines[3].replace("cells=4", "cells=5")), &[]),
+        (foreign, &["other.csv, line 2", "another scene"]),
+        ("x,y\n1,2\n".to_string(), &["other.csv, line 1", "other columns"]),
+    ] {
+        fs::write(dir.join("other.csv"), other).unwrap();
+        let arguments = ["trade", "--out", "out", "--merge", "log.csv", "other.csv"];
+        let merged = program(&dir, &arguments);
+        match words {
+            [] => {
+                assert!(merged.status.success(), "{}", text(&merged.stderr));
+                fs::remove_dir_all(dir.join("out")).unwrap();
+            }
+            words => assert_fails(&merged, 2, words),
+        }
+    }
+    fs::write(dir.join("log.csv"), format!("{log}{}\n", lines[2])).unwrap();
+    let merged = program(&dir, &["trade", "--out", "out", "--merge", "log.csv"]);
+    assert_fails(&merged, 2, &["log.csv, line 5", "a second time"]);
+    assert_eq!(files(&dir), ["log.csv", "other.csv"]);
     let unmeasured = program(&dir, &["trade", "--list", "--scene", "colliding-discs"]);
     assert_fails(&unmeasured, 2, &["no exact solution"]);
 }

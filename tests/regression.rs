@@ -10,6 +10,7 @@ use crate::support::*;
 use lme_mpm::method::exact::Exact;
 use lme_mpm::output::figure::{self, Axes};
 use lme_mpm::output::summary;
+use lme_mpm::run::stability;
 use lme_mpm::run::table::{Table, shortest};
 use lme_mpm::setup;
 use std::fmt::Write;
@@ -109,6 +110,7 @@ fn comparison_on_the_bar() {
          largest energy drift,pairs per particle and step,steps\n",
     );
     let mut lists: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+    let mut errors = Vec::new();
     for basis in BASES.into_iter().filter(|basis| *basis != LME_MIDDLE) {
         for (mass, cfl) in [(LUMPED, "time.cfl=0.5"), (CONSISTENT, "time.cfl=0.2")] {
             let mut points = Vec::new();
@@ -126,17 +128,58 @@ fn comparison_on_the_bar() {
                 )
                 .unwrap();
                 points.push((f64::from(cells), v));
+                errors.push(((basis.name, mass.name, cells), [v, sigma, u, drift]));
             }
             if [LINEAR, BSPLINE, LME_WIDE].contains(&basis) {
                 lists.push((format!("{}, {}", basis.name, mass.name), points));
             }
         }
     }
+    what_the_comparison_shows(&errors);
     approve("comparison__bar", &table);
     let lists: Vec<(&str, Vec<(f64, f64)>)> =
         lists.iter().map(|(name, points)| (name.as_str(), points.clone())).collect();
     let title = "Velocity error of the bar by basis and mass matrix";
     approve_picture("comparison__bar_figure", figures::convergence(title, &lists));
+}
+
+/// What the book says of the comparison on the bar, on 40, 80 and 160 cells: errors of velocity,
+/// stress and displacement, and the drift of the energy, by basis, mass and cells.
+fn what_the_comparison_shows(errors: &[((&str, &str, i32), [f64; 4])]) {
+    let of = |basis: BasisCase, mass: MassCase, cells: i32| -> [f64; 4] {
+        let key = (basis.name, mass.name, cells);
+        errors.iter().find(|(found, _)| *found == key).unwrap().1
+    };
+    for cells in [40, 80, 160] {
+        let linear = of(LINEAR, LUMPED, cells);
+        for basis in [UGIMP, LME_NARROW] {
+            // Equal to 4% in the velocity and the stress, and as much for γ = 4 in all.
+            let other = of(basis, LUMPED, cells);
+            for n in 0..2 {
+                assert!((other[n] / linear[n] - 1.0).abs() < 0.04, "{}, {cells}", basis.name);
+            }
+        }
+        for basis in [BSPLINE, LME_WIDE] {
+            let [v, sigma, u, _] = of(basis, LUMPED, cells);
+            assert!(v > 1.05 * linear[0] && sigma > 1.1 * linear[1] && u > 1.3 * linear[2]);
+        }
+        let gain = of(LINEAR, CONSISTENT, cells)[0] / linear[0];
+        assert!((0.8..0.9).contains(&gain), "{cells}: {gain}");
+        let gain = of(BSPLINE, CONSISTENT, cells)[0] / of(BSPLINE, LUMPED, cells)[0];
+        assert!((0.45..0.55).contains(&gain), "{cells}: {gain}");
+        let wide = of(LME_WIDE, CONSISTENT, cells);
+        for basis in [LINEAR, UGIMP, BSPLINE, LME_WIDE, LME_NARROW] {
+            let [v, sigma, ..] = of(basis, LUMPED, cells);
+            assert!(wide[0] < 0.34 * v && wide[1] < 0.45 * sigma, "{}, {cells}", basis.name);
+        }
+        assert!(wide[3] < 2e-3);
+    }
+    // Where the outline of a body cuts cells, on the colliding discs, with the consistent matrix.
+    let limit = |basis: BasisCase| {
+        stability::predicted(&scene(DISCS, &[basis.sets, CONSISTENT.sets].concat()), 0.0).unwrap()
+    };
+    let (linear, bspline, wide) = (limit(LINEAR), limit(BSPLINE), limit(LME_WIDE));
+    assert!(linear < 0.3 * wide && linear < 0.6 * bspline, "{linear}, {bspline}, {wide}");
 }
 
 /// The velocity of the bar's end, linear basis with the lumped mass matrix against local

@@ -3,6 +3,7 @@
 mod arguments;
 mod studies;
 mod terminal;
+mod verdicts;
 
 use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments};
 use clap::{CommandFactory, Parser};
@@ -17,6 +18,7 @@ use lme_mpm::port::points::{self, Points};
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
 use lme_mpm::scene::{DYKA, SHIPPED, Scene, declare, shipped};
+use lme_mpm::study::ranking::Question;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -43,9 +45,9 @@ pub fn main() -> ExitCode {
         Some(Command::Check { reference, theirs, rtol, atol, part }) => {
             compare(&reference, &theirs, Tolerance { relative: rtol, absolute: atol }, part)
         }
-        Some(Command::Trade(arguments)) => studies::trade(&arguments),
+        Some(Command::Trade(arguments)) => verdicts::trade(&arguments),
         Some(Command::Recommend { scene, error, quantity, out, jobs }) => {
-            studies::recommend(&scene, error, quantity, out, jobs)
+            verdicts::recommend(&scene, Question { criterion: quantity, error }, out, jobs)
         }
         Some(Command::Gamma { rows, out, jobs }) => studies::gamma(&rows, &out, jobs),
         Some(Command::Orders { rows, scene, out, jobs }) => {

@@ -1,27 +1,22 @@
 //! These commands run studies.
 
-use super::arguments::{RowArguments, TradeArguments};
+use super::arguments::RowArguments;
 use super::terminal::print_bytes;
 use indicatif::{ProgressBar, ProgressStyle};
 use lme_mpm::output::figure;
 use lme_mpm::output::files::{self, prepare, write_all};
-use lme_mpm::run::table::shortest;
 use lme_mpm::scene::DYKA;
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::setup;
-use lme_mpm::study::configuration::{Configuration, Template};
+use lme_mpm::study::configuration::Template;
 use lme_mpm::study::gamma::{self as gammas, AtGamma};
-use lme_mpm::study::log::{self, TimedRun};
 use lme_mpm::study::map;
-use lme_mpm::study::measured::Criterion;
 use lme_mpm::study::orders::{self, Along, Ladder, Volumes};
-use lme_mpm::study::ranking::{self, LEVELS, Tried};
 use lme_mpm::study::rows::{self, Study};
-use lme_mpm::study::trade as trades;
 use std::path::{Path, PathBuf};
 
 /// Shows a bar for `length` pieces of work, on stderr.
-fn progress(length: usize) -> ProgressBar {
+pub fn progress(length: usize) -> ProgressBar {
     let bar = ProgressBar::new(length as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len}, {eta} left") {
         bar.set_style(style);
@@ -30,7 +25,7 @@ fn progress(length: usize) -> ProgressBar {
 }
 
 /// Reads the scene of a study, which is the built-in bar if none is named.
-fn template(scene: Option<&Path>) -> Result<Template, Fault> {
+pub fn template(scene: Option<&Path>) -> Result<Template, Fault> {
     match scene {
         Some(path) => Template::parse(path, &files::scene_text(path)?),
         None => Template::parse(Path::new("dyka.toml (built in)"), DYKA),
@@ -38,190 +33,17 @@ fn template(scene: Option<&Path>) -> Result<Template, Fault> {
 }
 
 /// Refuses a scene without an exact solution: there is no error to measure.
-fn comparable(template: &Template) -> Result<(), Fault> {
+pub fn comparable(template: &Template) -> Result<(), Fault> {
     setup::has_exact(&template.scene)
 }
 
-/// Does `lme-mpm trade`.
-pub fn trade(arguments: &TradeArguments) -> Result<(), Fault> {
-    let template = template(arguments.scene.as_deref())?;
-    comparable(&template)?;
-    if let Some(line) = &arguments.rows.row {
-        return row(&template, line);
-    }
-    if arguments.rows.list {
-        return list(&template, arguments);
-    }
-    let dir = &arguments.out;
-    let rows = match arguments.rows.merge.is_empty() {
-        true => tried(&template, dir, arguments.full, arguments.jobs)?,
-        false => {
-            let scene = template.digest()?;
-            let mut runs = Vec::new();
-            for path in &arguments.rows.merge {
-                files::spare(path, dir, |name| ["trade.csv", "cheapest.csv"].contains(&name))?;
-                runs.extend(log::read_whole(path, &scene)?);
-            }
-            prepare(dir)?;
-            ranking::summarise(&runs)
-        }
-    };
-    write(dir, &rows)?;
-    print_bytes(report(dir, &rows).as_bytes())
-}
-
-/// Runs one configuration and prints its part of the log.
-fn row(template: &Template, line: &str) -> Result<(), Fault> {
-    let configuration: Configuration = line.parse()?;
-    template.scene(&configuration)?;
-    let passes = 1..=log::PASSES;
-    let runs: Vec<TimedRun> =
-        passes.map(|pass| TimedRun::of(template, &configuration, pass)).collect();
-    print_bytes(&log::csv_of(&template.digest()?, &runs)?)
-}
-
-/// Prints the command of every configuration, ready for a shell.
-fn list(template: &Template, arguments: &TradeArguments) -> Result<(), Fault> {
-    let grid = trades::grid(template, arguments.full)?;
-    let names: Vec<String> = grid.iter().map(Configuration::to_string).collect();
-    list_rows("trade", arguments.scene.as_deref(), &names)
-}
-
 /// Prints the command of every row of a study, ready for a shell.
-fn list_rows(study: &str, scene: Option<&Path>, names: &[String]) -> Result<(), Fault> {
+pub fn list_rows(study: &str, scene: Option<&Path>, names: &[String]) -> Result<(), Fault> {
     let quoted = |text: String| format!("'{}'", text.replace('\'', r"'\''"));
     let scene = scene
         .map_or(String::new(), |path| format!(" --scene {}", quoted(path.display().to_string())));
     let line = |name: &String| format!("lme-mpm {study}{scene} --row {}\n", quoted(name.clone()));
     print_bytes(names.iter().map(line).collect::<String>().as_bytes())
-}
-
-/// Runs what the log in `dir` does not have yet; rows in the order of the grid.
-fn tried(template: &Template, dir: &Path, full: bool, jobs: u16) -> Result<Vec<Tried>, Fault> {
-    prepare(dir)?;
-    let grid = trades::grid(template, full)?;
-    let bar = progress(grid.len() * log::PASSES);
-    let path = dir.join("runs.csv");
-    let runs = log::complete(template, &grid, &path, usize::from(jobs), &mut |done, all| {
-        bar.set_length(all as u64);
-        bar.set_position(done as u64);
-    });
-    bar.finish_and_clear();
-    let mut own = runs?;
-    own.retain(|run| grid.contains(&run.configuration));
-    own.sort_by_cached_key(|run| grid.iter().position(|one| *one == run.configuration));
-    Ok(ranking::summarise(&own))
-}
-
-/// Writes tables and diagrams.
-fn write(dir: &Path, rows: &[Tried]) -> Result<(), Fault> {
-    let mut files = vec![
-        ("trade.csv".to_string(), ranking::table(rows)?),
-        ("cheapest.csv".to_string(), ranking::cheapest_table(rows)?),
-    ];
-    for criterion in Criterion::ALL {
-        let name = criterion.name();
-        let efforts: Vec<figure::Effort> = rows
-            .iter()
-            .map(|row| figure::Effort {
-                work: row.wall_time.median,
-                error: row.error(criterion),
-                group: row.configuration.family(),
-            })
-            .collect();
-        let front = ranking::front(rows, criterion);
-        let front = front.iter().map(|(row, error)| (row.wall_time.median, *error)).collect();
-        let title = format!("Work and precision: {name}");
-        let picture = figure::work_precision(&title, "time of a run [s]", &efforts, &front);
-        files.push((format!("{name}.svg"), picture.into_bytes()));
-    }
-    write_all(dir, &files, &[])
-}
-
-/// Tells the terminal the cheapest by level, the baseline and what failed.
-fn report(dir: &Path, rows: &[Tried]) -> String {
-    let mut text = format!("The cheapest of {} configurations by error:\n", rows.len());
-    for criterion in Criterion::ALL {
-        text += &format!("\n{}\n   at most  time [ms]\n", criterion.name());
-        for level in LEVELS {
-            let level_text = format!("{}%", shortest(level * 100.0));
-            text += &match ranking::cheapest(rows, criterion, level) {
-                None => format!("{level_text:>10}          –\n"),
-                Some((Tried { configuration, wall_time, .. }, _)) => {
-                    format!("{level_text:>10} {:>10.2}  {configuration}\n", 1e3 * wall_time.median)
-                }
-            };
-        }
-    }
-    let baseline = |row: &&Tried| row.configuration.is_finite_elements();
-    text += "\nTo compare, linear finite elements (the three errors, time [ms]):\n";
-    for Tried { configuration, measured, wall_time, .. } in rows.iter().filter(baseline) {
-        if let Ok(found) = measured {
-            let time = 1e3 * wall_time.median;
-            let errors = Criterion::ALL.map(|criterion| format!("{:.1e}", found.error(criterion)));
-            text += &format!("  {} {time:>10.2}  {configuration}\n", errors.join(" "));
-        }
-    }
-    let failed: Vec<(&Configuration, &String)> = rows
-        .iter()
-        .filter_map(|row| Some((&row.configuration, row.measured.as_ref().err()?)))
-        .collect();
-    if !failed.is_empty() {
-        text += &format!("\n{} failed:\n", failed.len());
-    }
-    for (configuration, problem) in failed {
-        text += &format!("  {configuration}: {}\n", problem.lines().next().unwrap_or(""));
-    }
-    text + &format!("\nwritten to {}\n", dir.display())
-}
-
-/// Does `lme-mpm recommend`.
-pub fn recommend(
-    scene: &Path,
-    error: f64,
-    criterion: Criterion,
-    out: Option<PathBuf>,
-    jobs: u16,
-) -> Result<(), Fault> {
-    const FILE: &str = "recommended.toml";
-    let template = template(Some(scene))?;
-    comparable(&template)?;
-    let name = scene.file_stem().map_or("scene".into(), |name| name.to_string_lossy());
-    let dir = out.unwrap_or_else(|| Path::new("out/recommend").join(name.as_ref()));
-    files::spare(scene, &dir, |name| name == FILE || name.ends_with(".csv"))?;
-    let rows = tried(&template, &dir, false, jobs)?;
-    write(&dir, &rows)?;
-    let quantity = criterion.name();
-    let Some((best, found)) = ranking::cheapest(&rows, criterion, error) else {
-        write_all(&dir, &[], &[FILE.to_string()])?; // that of an earlier question
-        let best = ranking::least_error(&rows, criterion);
-        return Err(Fault::NothingReaches { quantity, error, best });
-    };
-    let text = format!(
-        "# The cheapest of {} configurations with a {quantity} error of at most {error}:\n\
-         # {}\n# Measured error {found:.3e}.\n\n{}",
-        rows.len(),
-        best.configuration,
-        template.file(&best.configuration)?
-    );
-    write_all(&dir, &[(FILE.to_string(), text.into_bytes())], &[])?;
-    let asked = format!("For a {quantity} error of at most {}%", shortest(error * 100.0));
-    let evidence = evidence(&ranking::front(&rows, criterion), best);
-    let file = dir.join(FILE);
-    let ready = format!("ready to run: lme-mpm run {}", file.display());
-    print_bytes(format!("{asked}:\n{}\n\n{evidence}\n{ready}\n", best.configuration).as_bytes())
-}
-
-/// Tells the front, with a mark at the `best`.
-fn evidence(front: &[(&Tried, f64)], best: &Tried) -> String {
-    let mut text =
-        "  time [ms]     error configuration (on the front of time and error)\n".to_string();
-    for (row, error) in front {
-        let mark = if *row == best { ">" } else { " " };
-        let time = 1e3 * row.wall_time.median;
-        text += &format!("{mark} {time:>9.2} {error:>9.2e} {}\n", row.configuration);
-    }
-    text
 }
 
 /// Does `lme-mpm gamma`.

@@ -74,6 +74,11 @@ pub struct GridSpec {
     pub particles_per_cell: Vec<usize>,
     /// Cells before and after the body along each axis.
     pub beyond: Vec<[usize; 2]>,
+    /// How far the particles of MPM stand from the middle of their share of the body, along
+    /// every axis to one side and the other in turn, in units of their distance. No key sets
+    /// it: a scene has 0, and a study moves them to see whether a result hangs on where they
+    /// stand.
+    pub offset: f64,
 }
 
 /// This declares the time step and the end of the run.

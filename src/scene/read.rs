@@ -210,5 +210,6 @@ fn grid(values: &Values, boundary: &[[Side; 2]]) -> Result<GridSpec, Box<SceneEr
         cells: values.wholes("grid.cells")?,
         particles_per_cell: values.wholes("grid.particles_per_cell")?,
         beyond,
+        offset: 0.0,
     })
 }

@@ -27,6 +27,12 @@ pub fn places<const D: usize>(scene: &Scene) -> Vec<Place<D>> {
     let along = std::array::from_fn(|d| scene.grid.cells[d] * per_cell[d]);
     let h = |d: usize| scene.body.length[d] / scene.grid.cells[d] as f64;
     let points: [_; D] = std::array::from_fn(|d| points(scene.method, per_cell[d]));
+    // To one side and the other in turn, so that the body stays where it is.
+    let aside = |d: usize, number: usize| match (scene.method, number % 2) {
+        (Method::Otm, _) => 0.0, // its points are those of the quadrature
+        (Method::Mpm(_), 0) => scene.grid.offset / per_cell[d] as f64,
+        (Method::Mpm(_), _) => -scene.grid.offset / per_cell[d] as f64,
+    };
     let place = |number: [usize; D]| {
         let point = |d: usize| points[d][number[d] % per_cell[d]];
         let size = std::array::from_fn(|d| match scene.method {
@@ -34,7 +40,10 @@ pub fn places<const D: usize>(scene: &Scene) -> Vec<Place<D>> {
             Method::Otm => h(d) * point(d)[1],
         });
         Place {
-            x: SVector::from_fn(|d, _| ((number[d] / per_cell[d]) as f64 + point(d)[0]) * h(d)),
+            x: SVector::from_fn(|d, _| {
+                let within = point(d)[0] + aside(d, number[d]);
+                ((number[d] / per_cell[d]) as f64 + within) * h(d)
+            }),
             number,
             size,
             volume: size.iter().product(),

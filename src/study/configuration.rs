@@ -38,6 +38,15 @@ impl Configuration {
         values.next().unwrap_or("")
     }
 
+    /// Gives a configuration with another value of a key that this one has.
+    pub fn with(&self, key: &str, value: &str) -> Self {
+        let own = |set: &String| match set.split_once('=') {
+            Some((other, _)) if other == key => format!("{key}={value}"),
+            _ => set.clone(),
+        };
+        Configuration(self.0.iter().map(own).collect())
+    }
+
     /// Puts the values of some keys side by side, as in "lme 0.8".
     pub fn words(&self, keys: &[&str]) -> String {
         let values = keys.iter().map(|key| self.value(key)).filter(|value| !value.is_empty());
@@ -45,7 +54,7 @@ impl Configuration {
     }
 
     /// Tells whether these are linear finite elements: OTM with the linear basis. Studies
-    /// compare with them, but they stand on no front and are never the cheapest: where no
+    /// compare with them, but they stand on no front and are never recommended: where no
     /// particle is needed, they win.
     pub fn is_finite_elements(&self) -> bool {
         self.value("method") == "otm" && self.value("basis.kind") == "linear"

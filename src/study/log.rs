@@ -7,13 +7,20 @@ use super::pool;
 use super::rows::is_whole;
 use crate::run::table::{csv, shortest};
 use crate::scene::fault::Fault;
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Each configuration is timed as often as this.
 pub const PASSES: usize = 3;
+
+/// A run that takes less (s) is made again until it has taken as much.
+const SHORT: f64 = 5e-3;
+
+/// Progress hears how many runs of how many are done.
+pub type Progress<'a> = dyn FnMut(usize, usize) + 'a;
 
 /// A timed run is one pass of a configuration.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +30,7 @@ pub struct TimedRun {
     pub pass: usize,
     /// What came out, or why nothing did.
     pub measured: Result<Measured, String>,
-    /// (s).
+    /// Of the run and its errors (s).
     pub wall_time: f64,
 }
 
@@ -57,12 +64,20 @@ fn columns() -> Vec<&'static str> {
 }
 
 impl TimedRun {
-    /// Runs one configuration once.
+    /// Runs one configuration, and times the run without the reading of the scene. A run that
+    /// is too short for the clock is made again and again, and its time is the mean.
     pub fn of(template: &Template, configuration: &Configuration, pass: usize) -> Self {
-        let start = Instant::now();
         let scene = template.scene(configuration).map_err(|fault| fault.to_string());
-        let measured = scene.and_then(|scene| Measured::of(&scene));
-        let wall_time = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let measured = scene.as_ref().map_err(String::clone).and_then(Measured::of);
+        let (mut times, mut wall_time) = (1.0, start.elapsed().as_secs_f64());
+        if let (Ok(scene), Ok(_)) = (&scene, &measured) {
+            while wall_time < SHORT {
+                Measured::of(scene).ok(); // the same as before
+                (times, wall_time) = (times + 1.0, start.elapsed().as_secs_f64());
+            }
+        }
+        wall_time /= times;
         TimedRun { configuration: configuration.clone(), pass, measured, wall_time }
     }
 
@@ -101,38 +116,51 @@ pub fn csv_of<'a>(
 /// Reads the runs of a log that belongs to the scene with this digest; lines that an
 /// interruption has cut short are left out.
 ///
-/// Errors: [`Fault::Read`]; [`Fault::Argument`] for another study's log.
+/// Errors: [`Fault::Read`]; [`Fault::Points`] with the line that is of another study.
 pub fn read(path: &Path, scene: &str) -> Result<Vec<TimedRun>, Fault> {
     let lines = lines(path, scene)?;
     Ok(lines.into_iter().filter_map(|(_, run)| run).collect())
 }
 
-/// Reads a log of which every line must be whole, and which has at least one run.
+/// Reads logs of which every line must be whole, and every pass of a configuration stand
+/// there once; each log has at least one run.
 ///
-/// Errors: those of [`read`]; [`Fault::Points`] with the line that is not a run.
-pub fn read_whole(path: &Path, scene: &str) -> Result<Vec<TimedRun>, Fault> {
-    let fault = |line: u64, problem: &str| Fault::Points {
+/// Errors: those of [`read`]; [`Fault::Points`] with the line that is not a run, or a second
+/// time the same.
+pub fn merged(paths: &[PathBuf], scene: &str) -> Result<Vec<TimedRun>, Fault> {
+    let allowed = "runs as `lme-mpm trade --row` prints them, with finite numbers, each once";
+    let (mut runs, mut known) = (Vec::new(), BTreeSet::new());
+    for path in paths {
+        let lines = lines(path, scene)?;
+        if lines.is_empty() {
+            return Err(fault_at(path, 1, "there is no run", allowed));
+        }
+        for (line, run) in lines {
+            let Some(run) = run else {
+                return Err(fault_at(path, line, "this is not a whole run", allowed));
+            };
+            if !known.insert((run.configuration.to_string(), run.pass)) {
+                return Err(fault_at(path, line, "this run stands here a second time", allowed));
+            }
+            runs.push(run);
+        }
+    }
+    Ok(runs)
+}
+
+/// Makes the fault of a line.
+fn fault_at(path: &Path, line: u64, problem: &str, allowed: &str) -> Fault {
+    Fault::Points {
         path: path.display().to_string(),
         line,
         problem: problem.to_string(),
-        allowed: "runs as `lme-mpm trade --row` prints them, with finite numbers".to_string(),
-    };
-    let lines = lines(path, scene)?;
-    if lines.is_empty() {
-        return Err(fault(1, "there is no run"));
+        allowed: allowed.to_string(),
     }
-    let run = |(line, run): (u64, Option<_>)| run.ok_or(fault(line, "this is not a whole run"));
-    lines.into_iter().map(run).collect()
 }
 
 /// Reads the lines of a log with their numbers, each with its run if it is whole.
 fn lines(path: &Path, scene: &str) -> Result<Vec<(u64, Option<TimedRun>)>, Fault> {
     let fault = |source| Fault::Read { path: path.to_path_buf(), source };
-    let refuse = |what: &str, allowed| Fault::Argument {
-        argument: "log",
-        problem: format!("{} {what}", path.display()),
-        allowed,
-    };
     let text = fs::read_to_string(path).map_err(fault)?;
     if !text.contains('\n') {
         return Ok(Vec::new()); // cut short before its first line was whole
@@ -140,7 +168,7 @@ fn lines(path: &Path, scene: &str) -> Result<Vec<(u64, Option<TimedRun>)>, Fault
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|error| fault(error.into()))?.clone();
     if header.iter().ne(columns()) {
-        return Err(refuse("has other columns", "a log of `lme-mpm trade`"));
+        return Err(fault_at(path, 1, "these are other columns", "a log of `lme-mpm trade`"));
     }
     let mut lines = Vec::new();
     for record in reader.records() {
@@ -149,7 +177,7 @@ fn lines(path: &Path, scene: &str) -> Result<Vec<(u64, Option<TimedRun>)>, Fault
         let whole = is_whole(&record, &text, header.len());
         if whole && &record[0] != scene {
             let allowed = "a log of this scene, or another --out";
-            return Err(refuse("belongs to another scene", allowed));
+            return Err(fault_at(path, line, "this run belongs to another scene", allowed));
         }
         lines.push((line, TimedRun::read(&record).filter(|_| whole)));
     }
@@ -166,7 +194,7 @@ pub fn complete(
     grid: &[Configuration],
     path: &Path,
     jobs: usize,
-    progress: &mut dyn FnMut(usize, usize),
+    progress: &mut Progress<'_>,
 ) -> Result<Vec<TimedRun>, Fault> {
     let scene = template.digest()?;
     let fault = |source| Fault::Write { path: path.to_path_buf(), source };

@@ -10,3 +10,4 @@ pub mod pool;
 pub mod ranking;
 pub mod rows;
 pub mod trade;
+pub mod verdict;

@@ -25,6 +25,11 @@ pub struct Tried {
 }
 
 impl Tried {
+    /// Counts the pairs of particle and node; none for a run that failed.
+    pub fn pairs(&self) -> Option<u64> {
+        self.measured.as_ref().ok().map(|measured| measured.cost.particle_node_pairs)
+    }
+
     /// Gives the relative error in one quantity; none for a run that failed.
     pub fn error(&self, criterion: Criterion) -> Option<f64> {
         self.measured.as_ref().ok().map(|measured| measured.error(criterion))
@@ -58,16 +63,79 @@ pub fn summarise(runs: &[TimedRun]) -> Vec<Tried> {
     order.into_iter().map(tried).collect()
 }
 
-/// Picks those that can be on a front, with their error.
-fn judged(rows: &[Tried], criterion: Criterion) -> impl Iterator<Item = (&Tried, f64)> {
-    let own = rows.iter().filter(|row| !row.configuration.is_finite_elements());
+/// A verdict is asked of all that can be recommended, or of one kind of method to stand beside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Among {
+    /// MPM and OTM, but for finite elements.
+    Particles,
+    Mpm,
+    /// OTM, but for finite elements.
+    Otm,
+    FiniteElements,
+}
+
+impl Among {
+    /// Names the kind, as in `cheapest.csv`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Among::Particles => "mpm and otm",
+            Among::Mpm => "mpm",
+            Among::Otm => "otm",
+            Among::FiniteElements => "finite elements",
+        }
+    }
+
+    fn has(self, configuration: &Configuration) -> bool {
+        let elements = configuration.is_finite_elements();
+        match self {
+            Among::Particles => !elements,
+            Among::Mpm => configuration.value("method") == "mpm",
+            Among::Otm => configuration.value("method") == "otm" && !elements,
+            Among::FiniteElements => elements,
+        }
+    }
+}
+
+/// The price of a run is its time, which is that of one machine, or its pairs of particle and
+/// node, which are counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Price {
+    Time,
+    Pairs,
+}
+
+impl Price {
+    /// Names the price, as in `cheapest.csv`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Price::Time => "time",
+            Price::Pairs => "pairs",
+        }
+    }
+
+    /// Gives the price of a run that came to its end (s or 1).
+    fn of(self, row: &Tried) -> f64 {
+        match self {
+            Price::Time => row.wall_time.median,
+            Price::Pairs => row.pairs().map_or(f64::INFINITY, |pairs| pairs as f64),
+        }
+    }
+}
+
+/// Picks those of a kind that came to their end, each with its error.
+fn judged(
+    rows: &[Tried],
+    among: Among,
+    criterion: Criterion,
+) -> impl Iterator<Item = (&Tried, f64)> {
+    let own = rows.iter().filter(move |row| among.has(&row.configuration));
     own.filter_map(move |row| Some((row, row.error(criterion)?)))
 }
 
 /// Picks those that nobody beats in both error and time, by rising time, each with its
 /// error.
 pub fn front(rows: &[Tried], criterion: Criterion) -> Vec<(&Tried, f64)> {
-    let mut list: Vec<(&Tried, f64)> = judged(rows, criterion).collect();
+    let mut list: Vec<(&Tried, f64)> = judged(rows, Among::Particles, criterion).collect();
     list.sort_by(|a, b| a.0.wall_time.median.total_cmp(&b.0.wall_time.median));
     let mut least = f64::INFINITY;
     list.retain(|(_, error)| {
@@ -78,16 +146,40 @@ pub fn front(rows: &[Tried], criterion: Criterion) -> Vec<(&Tried, f64)> {
     list
 }
 
-/// Picks the fastest whose error is at most `error`, with its own.
-pub fn cheapest(rows: &[Tried], criterion: Criterion, error: f64) -> Option<(&Tried, f64)> {
-    judged(rows, criterion)
-        .filter(|(_, found)| *found <= error)
-        .min_by(|a, b| a.0.wall_time.median.total_cmp(&b.0.wall_time.median))
+/// A question is which rows reach an error in one quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Question {
+    pub criterion: Criterion,
+    /// The largest error that is allowed, relative.
+    pub error: f64,
 }
 
-/// Finds the least error of all, which is infinite if there is none.
-pub fn least_error(rows: &[Tried], criterion: Criterion) -> f64 {
-    judged(rows, criterion).map(|(_, error)| error).fold(f64::INFINITY, f64::min)
+/// Lists those of a kind that reach the error, the cheapest first, each with its own error.
+pub fn reaching(
+    rows: &[Tried],
+    among: Among,
+    price: Price,
+    Question { criterion, error }: Question,
+) -> Vec<(&Tried, f64)> {
+    let mut list: Vec<(&Tried, f64)> =
+        judged(rows, among, criterion).filter(|(_, found)| *found <= error).collect();
+    list.sort_by(|a, b| price.of(a.0).total_cmp(&price.of(b.0)));
+    list
+}
+
+/// Picks the cheapest of a kind that reaches the error, with its own error.
+pub fn cheapest(
+    rows: &[Tried],
+    among: Among,
+    price: Price,
+    question: Question,
+) -> Option<(&Tried, f64)> {
+    reaching(rows, among, price, question).into_iter().next()
+}
+
+/// Picks the one of a kind with the least error, with that.
+pub fn best(rows: &[Tried], among: Among, criterion: Criterion) -> Option<(&Tried, f64)> {
+    judged(rows, among, criterion).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Writes `trade.csv`: every configuration key by key, errors, cost, times, and on which
@@ -114,21 +206,41 @@ pub fn table(rows: &[Tried]) -> Result<Vec<u8>, Fault> {
 /// The table of the cheapest asks for these levels of error.
 pub const LEVELS: [f64; 7] = [0.2, 0.1, 0.05, 0.03, 0.01, 0.003, 0.001];
 
-/// Writes `cheapest.csv`: for each criterion and level the fastest configuration that reaches it.
+/// A verdict has these lines: whom it is asked of, and by which price.
+pub const VERDICT: [(Among, Price); 5] = [
+    (Among::Particles, Price::Time),
+    (Among::Particles, Price::Pairs),
+    (Among::Mpm, Price::Time),
+    (Among::Otm, Price::Time),
+    (Among::FiniteElements, Price::Time),
+];
+
+/// Writes `cheapest.csv`: for each criterion, level and line of the verdict the cheapest
+/// configuration that reaches it; where none does, the least error there is.
 pub fn cheapest_table(rows: &[Tried]) -> Result<Vec<u8>, Fault> {
     let mut lines = Vec::new();
     for criterion in Criterion::ALL {
-        for level in LEVELS {
-            let mut line = vec![criterion.name().to_string(), shortest(level)];
-            line.extend(match cheapest(rows, criterion, level) {
-                Some((row, error)) => {
-                    let time = shortest(row.wall_time.median);
-                    [row.configuration.to_string(), shortest(error), time]
-                }
-                None => ["none".to_string(), String::new(), String::new()],
-            });
-            lines.push(line);
+        for error in LEVELS {
+            for (among, price) in VERDICT {
+                let mut line = vec![criterion.name().to_string(), shortest(error)];
+                line.extend([among.name(), price.name()].map(String::from));
+                line.extend(match cheapest(rows, among, price, Question { criterion, error }) {
+                    Some((row, found)) => {
+                        let numbers = [found, row.wall_time.median, Price::Pairs.of(row)];
+                        let [found, time, pairs] = numbers.map(shortest);
+                        [row.configuration.to_string(), found, time, pairs]
+                    }
+                    None => {
+                        let least = best(rows, among, criterion);
+                        let least = least.map_or(String::new(), |(_, error)| shortest(error));
+                        ["none".to_string(), least, String::new(), String::new()]
+                    }
+                });
+                lines.push(line);
+            }
         }
     }
-    csv(&["quantity", "level", "configuration", "error", "wall_time"], lines.into_iter())
+    let columns =
+        ["quantity", "level", "among", "by", "configuration", "error", "wall_time", "pairs"];
+    csv(&columns, lines.into_iter())
 }

@@ -3,8 +3,11 @@
 
 use super::configuration::{Configuration, Template};
 use super::map;
+use crate::method::exact::mode::Mode;
 use crate::run::stability;
 use crate::scene::fault::Fault;
+use crate::scene::{Motion, Scene};
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// The time step of a configuration is given as a number c Δt / h.
 #[derive(Clone, Copy)]
@@ -18,7 +21,7 @@ use Step::{Common, PartOfLimit};
 
 /// A sweep is what a study varies.
 struct Sweep {
-    /// Factors of the scene's cells.
+    /// Factors of the scene's cells from one up; below one are those of [`coarser`].
     refinements: &'static [f64],
     bases: &'static [&'static str],
     integrators: &'static [&'static str],
@@ -50,7 +53,7 @@ const QUICK: Sweep = Sweep {
 };
 
 const FULL: Sweep = Sweep {
-    refinements: &[0.25, 0.5, 1.0, 2.0, 4.0, 8.0],
+    refinements: &[1.0, 2.0, 4.0, 8.0],
     bases: &[
         LINEAR,
         UGIMP,
@@ -122,28 +125,109 @@ fn otm(sweep: &Sweep) -> Vec<Scheme> {
     all
 }
 
-/// Lists the configurations of a study of this template, none twice.
+/// The longest side of a body has this many cells at least.
+const LEAST_CELLS: f64 = 4.0;
+
+/// Tells how many cells along each axis a grid needs to know what moves the body: two to half a
+/// wave, two across the ring of a vortex, one to a patch of initial velocity; and enough of
+/// them for [`LEAST_CELLS`] along the longest side.
+fn needed(scene: &Scene) -> Vec<f64> {
+    let length = &scene.body.length;
+    let longest = length.iter().copied().fold(0.0, f64::max);
+    let waves =
+        |mode: usize, d: usize| Mode::new(scene.ends(d), mode, length[d]).k * length[d] / PI;
+    let own = |d: usize| match &scene.motion {
+        Motion::Vibration { mode, .. } => 2.0 * waves(*mode, d),
+        Motion::Manufactured(spec) => 2.0 * waves(spec.mode, d),
+        Motion::Vortex(spec) => 2.0 * length[d] / (0.5 * spec.radius),
+        Motion::Regions(regions) => {
+            let parts = regions.iter().map(|region| length[d] / (region.to[d] - region.from[d]));
+            parts.fold(0.0, f64::max)
+        }
+    };
+    // A ratio of decimal lengths may be a hair above a whole number.
+    let whole = |cells: f64| libm::ceil(cells * (1.0 - 1e-9)).max(1.0);
+    (0..scene.dimension()).map(|d| whole(own(d).max(LEAST_CELLS * length[d] / longest))).collect()
+}
+
+/// Lists the factors of the scene's cells that make coarser grids, from the coarsest up: a cell
+/// grows by √2 from one to the next, as long as the grid has the cells that [`needed`] asks for.
+fn coarser(scene: &Scene) -> Vec<f64> {
+    let needed = needed(scene);
+    let knows = |refinement: f64| {
+        let cells = scene.grid.cells.iter().map(|n| libm::round(*n as f64 * refinement));
+        cells.zip(&needed).all(|(cells, needed)| cells >= *needed)
+    };
+    let mut factors: Vec<f64> = Vec::new();
+    let mut halvings: i32 = 0;
+    loop {
+        let half = 1.0 / f64::from(1_u32 << halvings);
+        for factor in [half * FRAC_1_SQRT_2, 0.5 * half] {
+            if !knows(factor) || halvings == 30 {
+                factors.reverse();
+                return factors;
+            }
+            factors.push(factor);
+        }
+        halvings += 1;
+    }
+}
+
+/// Says in words which grids a study leaves out because they are too coarse.
+pub fn left_out(scene: &Scene) -> String {
+    let cells: Vec<String> = needed(scene).iter().map(f64::to_string).collect();
+    let why = match &scene.motion {
+        Motion::Vibration { .. } | Motion::Manufactured(_) => "two to half a wave",
+        Motion::Vortex(_) => "two across the ring",
+        Motion::Regions(regions) if !regions.is_empty() => "one to a patch of initial velocity",
+        Motion::Regions(_) => "a few along the body",
+    };
+    format!("grids of fewer than {} cells are left out ({why}, and at least four)", cells.join("×"))
+}
+
+/// Lists the configurations of a study of this template, grid by grid from the coarsest,
+/// none twice.
 ///
-/// In 1D the first row of each grid is the baseline: linear finite elements with
-/// central differences, just below cΔt/h = 1, where they are exact on the bar. (At 1
-/// itself an element that is compressed by a thousandth is beyond its limit.)
-pub fn grid(template: &Template, full: bool) -> Result<Vec<Configuration>, Fault> {
+/// In 1D each grid has two rows of linear finite elements with central differences: at
+/// c Δt/h = 1/2, and just below 1, where they are exact on the bar. (At 1 itself an element
+/// that is compressed by a thousandth is beyond its limit.)
+pub fn levels(template: &Template, full: bool) -> Result<Vec<Vec<Configuration>>, Fault> {
     let sweep = if full { FULL } else { QUICK };
     let mut schemes = Vec::new();
     if template.scene.dimension() == 1 {
-        let parts = format!("mass=lumped {LINEAR} {NEWMARK}");
-        schemes.push(Scheme { method: "otm", parts, particles_per_cell: 1, step: Common(0.998) });
+        for cfl in [0.998, 0.5] {
+            let parts = format!("mass=lumped {LINEAR} {NEWMARK}");
+            schemes.push(Scheme { method: "otm", parts, particles_per_cell: 1, step: Common(cfl) });
+        }
     }
     schemes.extend(mpm(&sweep));
     schemes.extend(otm(&sweep));
-    let mut all: Vec<Configuration> = Vec::new();
-    for &refinement in sweep.refinements {
+    let mut levels: Vec<Vec<Configuration>> = Vec::new();
+    for &refinement in coarser(&template.scene).iter().chain(sweep.refinements) {
+        let mut level: Vec<Configuration> = Vec::new();
         for scheme in &schemes {
-            let one = configuration(template, scheme, refinement)?;
-            all.extend(one.filter(|one| !all.contains(one)));
+            if let Some(one) = configuration(template, scheme, refinement)?
+                && !levels.iter().flatten().chain(&level).any(|known| *known == one)
+            {
+                level.push(one);
+            }
         }
+        levels.push(level);
     }
-    Ok(all)
+    Ok(levels)
+}
+
+/// Lists the configurations of [`levels`] one after the other.
+pub fn grid(template: &Template, full: bool) -> Result<Vec<Configuration>, Fault> {
+    Ok(levels(template, full)?.concat())
+}
+
+/// Estimates from below the pairs of particle and node of a run: every particle sees the 2^D
+/// nodes of its cell in every step. No run is known for a scene that is refused.
+pub fn least_pairs(template: &Template, configuration: &Configuration) -> Option<f64> {
+    let scene = template.scene(configuration).ok()?;
+    let (particles, _, steps) = scene.sizes();
+    Some(particles * steps * libm::exp2(scene.dimension() as f64))
 }
 
 /// Puts a scheme on a grid; gives `None` where its step is a part of a limit that there is
