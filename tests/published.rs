@@ -16,7 +16,7 @@ const UINTAH: [(usize, f64); 6] = [
     (687, 4.12e-7),
 ];
 
-/// The periodic bar beside Uintah's errors. Those are of first order, and so is forward Euler
+/// The periodic bar beside Uintah's errors. Those are of first order to 0.15, and so is forward Euler
 /// here, with errors within a factor of three of them; Newmark's method is below them on every
 /// grid and its order is above 1.5.
 #[test]
@@ -46,7 +46,7 @@ fn published_periodic_bar() {
     let published = observed_order(&h, &UINTAH.map(|(_, error)| error));
     let [newmark, euler] = ours.map(|errors| observed_order(&h, &errors));
     for order in [&published, &euler] {
-        assert!((order.slope - 1.0).abs() < 0.1, "{order}");
+        assert!((order.slope - 1.0).abs() < 0.15, "{order}");
     }
     assert!(newmark.slope > 1.5, "{newmark}");
     let [published, euler, newmark] =
