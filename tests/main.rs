@@ -43,5 +43,5 @@ mod studies;
 mod support;
 mod table;
 mod trace;
-mod watch;
 mod verdicts;
+mod watch;

@@ -125,9 +125,9 @@ pub enum Command {
     },
     /// Measure the trade of speed for accuracy on a scene
     ///
-    /// Runs many configurations three times each and writes trade.csv (errors,
-    /// energy drift, counted cost, wall time), cheapest.csv, and a work-precision
-    /// diagram for each quantity. runs.csv is its log: a study that was interrupted
+    /// Runs many configurations three times each, on grids from a few cells up, and writes
+    /// trade.csv (errors, energy drift, counted cost, wall time), cheapest.csv, and a
+    /// work-precision diagram for each quantity. runs.csv is its log: a study that was interrupted
     /// goes on where it stopped.
     #[command(
         after_help = "Example:\n  lme-mpm trade --out out/trade\n  lme-mpm trade --list | parallel --jobs 2 '{}' '>' 'rows/{#}.csv'\n  lme-mpm trade --out out/trade --merge rows/*.csv"
@@ -135,8 +135,10 @@ pub enum Command {
     Trade(TradeArguments),
     /// Find the cheapest configuration that reaches an error on a scene
     ///
-    /// Measures as `trade` does, prints the evidence, and writes
-    /// recommended.toml, a scene file ready to run.
+    /// Measures as `trade` does, from coarse grids up, until the rest would cost more. Prints
+    /// the cheapest with MPM, OTM and finite elements beside it, and what comes out when
+    /// nothing changes but a little γ, the particles or the grid. Writes recommended.toml, a
+    /// scene file ready to run, neighbours.csv, and where the cheapest is fragile robust.toml.
     #[command(
         after_help = "Example:\n  lme-mpm recommend vibration --error 1% --quantity displacement"
     )]
