@@ -143,9 +143,12 @@ fn comparison_on_the_bar() {
     approve_picture("comparison__bar_figure", figures::convergence(title, &lists));
 }
 
-/// What the book says of the comparison on the bar, on 40, 80 and 160 cells: errors of velocity,
-/// stress and displacement, and the drift of the energy, by basis, mass and cells.
-fn what_the_comparison_shows(errors: &[((&str, &str, i32), [f64; 4])]) {
+/// Basis, mass and cells, with the errors of velocity, stress and displacement and the drift of
+/// the energy.
+type Compared<'a> = ((&'a str, &'a str, i32), [f64; 4]);
+
+/// What the book says of the comparison on the bar, on 40, 80 and 160 cells.
+fn what_the_comparison_shows(errors: &[Compared]) {
     let of = |basis: BasisCase, mass: MassCase, cells: i32| -> [f64; 4] {
         let key = (basis.name, mass.name, cells);
         errors.iter().find(|(found, _)| *found == key).unwrap().1
