@@ -63,7 +63,7 @@ pub struct Search {
 }
 
 /// Tries configurations from the coarsest grid up, with the log at `path`, until all that are
-/// left would cost more: their pairs alone, estimated from below, are more than [`DEAREST`]
+/// left would cost more: their pairs alone, estimated from below, are more than eight
 /// times the least that reaches the error.
 ///
 /// Errors: those of [`log::complete`].
