@@ -297,7 +297,7 @@ fn extremes_nan_is_caught() {
                 let scene = dyka(&[sets, &["grid.cells=10"]].concat());
                 let (model, mut state) = at_start::<1>(&scene);
                 march(&model, &mut state, 5);
-                let moving_nodes = model.method == Method::Otm;
+                let moving_nodes = model.method.moves_nodes();
                 let hurt = 9;
                 // Nodes and points of OTM are numbered apart, two points to a node.
                 let mut beside = hurt;

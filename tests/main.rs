@@ -25,6 +25,7 @@ mod matrix;
 mod one_bar;
 mod orders;
 mod otm;
+mod otm_action;
 mod otm_bar;
 mod port;
 mod published;

@@ -111,7 +111,7 @@ impl Problem {
     fn ran<const D: usize>(&self, cells: &[usize], sets: &[&str]) -> (Model<D>, State<D>) {
         let (mut model, mut state) = at_start::<D>(&self.scene(cells, sets));
         model.dt *= model.steps as f64 / STEPS as f64;
-        if model.method != Method::Otm {
+        if !model.method.moves_nodes() {
             for x in &mut state.particle.x {
                 x[0] += 0.245 * model.grid.h[0];
             }

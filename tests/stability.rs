@@ -375,7 +375,7 @@ fn bound_over_limit<const D: usize>(scene: &Scene, offset: [f64; 2]) -> Option<f
         }
     }
     match model.method {
-        Method::Otm => otm::start(&mut state, &model).unwrap(),
+        Method::Otm(_) => otm::start(&mut state, &model).unwrap(),
         Method::Mpm(_) => {
             let State { particle, node, shape, mass, scratch, .. } = &mut state;
             steps::tabulate(shape, scratch, particle, &model).unwrap();

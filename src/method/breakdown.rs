@@ -60,6 +60,11 @@ pub enum Breakdown {
     )]
     SingularMass { particles: usize, nodes: usize },
     #[error(
+        "no particle sees node {node} any more, and its renewed mass is zero; set nodal_mass = \
+         \"kept\""
+    )]
+    NoMass { node: usize },
+    #[error(
         "the run blew up: its energy is {ratio:e} times what start and loads gave it, and \
          particle {particle} holds the largest share"
     )]

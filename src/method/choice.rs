@@ -1,14 +1,25 @@
 //! A scene chooses from these closed sets: method, scheme, mass matrix.
 
-use super::reading::{StepEight, StressUpdate};
+use super::reading::{NodalMass, StepEight, StressUpdate};
 
 /// A method carries a body through time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// The material point method, by one of its schemes.
     Mpm(Integrator),
-    /// The optimal transportation meshfree method, which has one scheme.
-    Otm,
+    /// The optimal transportation meshfree method, which has one scheme; its nodes' masses are
+    /// read in three ways.
+    Otm(NodalMass),
+}
+
+impl Method {
+    /// Says whether the nodes are the body's own and go with it.
+    pub fn moves_nodes(&self) -> bool {
+        match self {
+            Method::Mpm(_) => false,
+            Method::Otm(_) => true,
+        }
+    }
 }
 
 /// An integrator is the scheme that carries the material point method through time.

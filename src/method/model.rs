@@ -40,7 +40,7 @@ impl<const D: usize> Model<D> {
         let printed = self.kinematics == Kinematics::AsPrinted;
         match self.method {
             Method::Mpm(_) => !printed || self.law.law.is_hyperelastic(),
-            Method::Otm => true,
+            Method::Otm(_) => true,
         }
     }
 
@@ -51,7 +51,7 @@ impl<const D: usize> Model<D> {
         let of_method = match self.method {
             Method::Mpm(integrator) if integrator.carries_acceleration() => vector, // a_p
             Method::Mpm(_) => 0,
-            Method::Otm => 0,
+            Method::Otm(_) => 0,
         };
         let of_map = if self.keeps_gradient() { matrix } else { 0 }; // G_p
         let of_law = if self.law.law.is_hyperelastic() { matrix } else { 0 }; // F_p
@@ -82,7 +82,7 @@ impl<const D: usize> State<D> {
         let zeros = |count: usize| vec![SVector::zeros(); count];
         let nodes = match model.method {
             Method::Mpm(_) => model.grid.nodes(),
-            Method::Otm => x.len(),
+            Method::Otm(_) => x.len(),
         };
         let mut node = Nodes::blank(nodes);
         match model.method {
@@ -93,7 +93,7 @@ impl<const D: usize> State<D> {
                 }
             }
             Method::Mpm(_) => {}
-            Method::Otm => {
+            Method::Otm(_) => {
                 node.x = x;
             }
         }
@@ -126,7 +126,7 @@ impl<const D: usize> State<D> {
     pub fn carriers(&self, method: Method) -> Carriers<'_, D> {
         match method {
             Method::Mpm(_) => self.particle.carriers(),
-            Method::Otm => Carriers { m: &self.node.m, x: &self.node.x, v: &self.node.v },
+            Method::Otm(_) => Carriers { m: &self.node.m, x: &self.node.x, v: &self.node.v },
         }
     }
 

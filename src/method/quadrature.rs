@@ -13,15 +13,15 @@ pub fn points(method: Method, n: usize) -> Vec<[f64; 2]> {
         (Method::Mpm(_), _) | (_, 1) => {
             (0..n).map(|k| [(k as f64 + 0.5) / n as f64, 1.0 / n as f64]).collect()
         }
-        (Method::Otm, 2) => {
+        (Method::Otm(_), 2) => {
             let r = 1.0 / libm::sqrt(3.0);
             about_middle(&[[-r, 1.0], [r, 1.0]])
         }
-        (Method::Otm, 3) => {
+        (Method::Otm(_), 3) => {
             let r = libm::sqrt(0.6);
             about_middle(&[[-r, 5.0 / 9.0], [0.0, 8.0 / 9.0], [r, 5.0 / 9.0]])
         }
-        (Method::Otm, _) => {
+        (Method::Otm(_), _) => {
             let (middle, spread) = (3.0 / 7.0, 2.0 / 7.0 * libm::sqrt(1.2));
             let (near, far) = (libm::sqrt(middle - spread), libm::sqrt(middle + spread));
             let share = libm::sqrt(30.0) / 36.0;

@@ -83,3 +83,22 @@ pub enum StressUpdate {
     /// After the particles have moved, from their momentum mapped anew.
     ModifiedLast,
 }
+
+/// OTM's nodes take their mass from the particles, once or in every step. Where it changes, the
+/// velocity of a node and its momentum cannot both stay.
+///
+/// The action of one step has ½ Σ_a m_a |x_a^{k+1} − x_a^k|² / Δt² with the m_a of k. Where
+/// these change from step to step, what it makes stationary carries the momentum on.
+///
+/// Tests: `otm_nodal_masses_keep_what_they_should`, `otm_nodal_masses_side_by_side` in
+/// `tests/otm_action.rs`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum NodalMass {
+    /// m_a is that of the start; velocity and momentum both stay.
+    #[default]
+    Kept,
+    /// m_a = Σ_p m_p N_ap of each new table; v_a stays, and the momentum m_a v_a jumps.
+    RenewedKeepingVelocity,
+    /// m_a = Σ_p m_p N_ap of each new table; m_a v_a stays, and the velocity jumps.
+    RenewedKeepingMomentum,
+}

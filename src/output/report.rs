@@ -105,7 +105,8 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
     let hint = match stopped.broken.breakdown {
         Breakdown::ReachesBeyond { .. }
         | Breakdown::NoBasis { .. }
-        | Breakdown::SingularMass { .. } => String::new(),
+        | Breakdown::SingularMass { .. }
+        | Breakdown::NoMass { .. } => String::new(),
         Breakdown::BeyondLimit { .. } | Breakdown::Gained { .. } => {
             "give the time step as a part of the limit with \
              time.fraction_of_critical, or a smaller time.cfl; "

@@ -98,7 +98,7 @@ fn made_by(method: Method, kinematics: Kinematics, n: usize) -> &'static [&'stat
     const STRAINED_LAST: &[&[&str]] =
         &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, MATERIAL];
     let steps: &[&[&str]] = match method {
-        Method::Otm => &[
+        Method::Otm(_) => &[
             &["m_I", "v_I"],
             &["v_I"],
             &["x_I"],

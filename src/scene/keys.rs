@@ -71,6 +71,13 @@ const RAMP: Number = Number { least: Included(0.0), ..any("s") };
 pub const KEYS: &[Key] = &[
     must("title", Text, "What summary and pictures are headed with"),
     must("method", Choice(&["mpm", "otm"]), "Particles on a grid, or on nodes that move"),
+    may(
+        "nodal_mass",
+        Choice(&["kept", "renewed-keeping-velocity", "renewed-keeping-momentum"]),
+        Without::Word("kept"),
+        "Whether nodes take their mass from the particles once, or in every step",
+    )
+    .with("method", "otm"),
     must("mass", Choice(&["lumped", "consistent"]), "The mass matrix of the nodes"),
     must("body", Table, "A box of elastic material"),
     must("body.length", PerAxis(positive("m")), "The size of the box, L in 1D")

@@ -6,7 +6,7 @@ use super::loading::{body_force, traction};
 use super::motion::motion;
 use super::parts::*;
 use super::probes::probes;
-use super::scheme::{basis, integrator, kinematics, otm, time};
+use super::scheme::{basis, integrator, kinematics, nodal_mass, otm, time};
 use super::sizes::wave_speed;
 use super::source::Source;
 use super::values::{Values, counted};
@@ -63,7 +63,10 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
     let mass = values.choose("mass", &masses)?;
     let body = body(values)?;
     let time = time(values)?;
-    let method = if is_otm { Method::Otm } else { Method::Mpm(integrator(values)?) };
+    let method = match is_otm {
+        true => Method::Otm(nodal_mass(values)?),
+        false => Method::Mpm(integrator(values)?),
+    };
     let boundary = boundary(values)?;
     let mut grid = grid(values, &boundary)?;
     if is_otm {

@@ -5,7 +5,7 @@ use super::parts::{GridSpec, Time};
 use super::values::Values;
 use crate::method::basis::{Basis, Support};
 use crate::method::choice::Integrator;
-use crate::method::reading::{Kinematics, StepEight, StressUpdate};
+use crate::method::reading::{Kinematics, NodalMass, StepEight, StressUpdate};
 
 /// Reads the `time` table but for the integrator.
 pub fn time(values: &Values) -> Result<Time, Box<SceneError>> {
@@ -56,6 +56,16 @@ pub fn integrator(values: &Values) -> Result<Integrator, Box<SceneError>> {
 pub fn kinematics(values: &Values) -> Result<Kinematics, Box<SceneError>> {
     let readings = [("as-printed", Kinematics::AsPrinted), ("consistent", Kinematics::Consistent)];
     values.choose("time.kinematics", &readings)
+}
+
+/// Reads whether the nodes of OTM keep their masses.
+pub fn nodal_mass(values: &Values) -> Result<NodalMass, Box<SceneError>> {
+    let readings = [
+        ("kept", NodalMass::Kept),
+        ("renewed-keeping-velocity", NodalMass::RenewedKeepingVelocity),
+        ("renewed-keeping-momentum", NodalMass::RenewedKeepingMomentum),
+    ];
+    values.choose("nodal_mass", &readings)
 }
 
 /// Reads the basis with what it needs.

@@ -29,7 +29,7 @@ pub fn places<const D: usize>(scene: &Scene) -> Vec<Place<D>> {
     let points: [_; D] = std::array::from_fn(|d| points(scene.method, per_cell[d]));
     // To one side and the other in turn, so that the body stays where it is.
     let aside = |d: usize, number: usize| match (scene.method, number % 2) {
-        (Method::Otm, _) => 0.0, // its points are those of the quadrature
+        (Method::Otm(_), _) => 0.0, // its points are those of the quadrature
         (Method::Mpm(_), 0) => scene.grid.offset / per_cell[d] as f64,
         (Method::Mpm(_), _) => -scene.grid.offset / per_cell[d] as f64,
     };
@@ -37,7 +37,7 @@ pub fn places<const D: usize>(scene: &Scene) -> Vec<Place<D>> {
         let point = |d: usize| points[d][number[d] % per_cell[d]];
         let size = std::array::from_fn(|d| match scene.method {
             Method::Mpm(_) => h(d) / per_cell[d] as f64,
-            Method::Otm => h(d) * point(d)[1],
+            Method::Otm(_) => h(d) * point(d)[1],
         });
         Place {
             x: SVector::from_fn(|d, _| {

@@ -20,7 +20,7 @@ pub fn model<const D: usize>(scene: &Scene) -> Model<D> {
     let places = lattice::places(scene);
     let fixed = match scene.method {
         Method::Mpm(_) => fixed(scene, &grid),
-        Method::Otm => {
+        Method::Otm(_) => {
             // Its nodes are the corners of the cells that hold particles.
             let corners = lattice::corners(&grid, &places);
             let number = |(I, i): (usize, usize)| Some((corners.binary_search(&I).ok()?, i));
@@ -77,7 +77,7 @@ pub fn initial_state<const D: usize>(model: &Model<D>, scene: &Scene) -> State<D
     }
     let nodes = match model.method {
         Method::Mpm(_) => Vec::new(),
-        Method::Otm => {
+        Method::Otm(_) => {
             let corners = lattice::corners(&model.grid, &places);
             corners.into_iter().map(|I| model.grid.position(I)).collect()
         }

@@ -24,7 +24,7 @@ pub fn start<const D: usize>(
     after: &mut impl FnMut(usize, &State<D>),
 ) -> Result<(), Breakdown> {
     match model.method {
-        Method::Otm => {
+        Method::Otm(_) => {
             otm::start(state, model)?;
             after(0, state);
         }
@@ -78,7 +78,7 @@ fn one_step<const D: usize>(
 ) -> Result<(), Breakdown> {
     let loads_at = time_of_loads(model.method, dt, t);
     match model.method {
-        Method::Otm => otm::step(n, state, model, dt, loads_at),
+        Method::Otm(masses) => otm::step(n, state, model, masses, dt, loads_at),
         Method::Mpm(integrator) => match integrator {
             Integrator::Newmark(reading) => newmark::step(n, state, model, reading, dt, loads_at),
             Integrator::ForwardEuler(order) => {
@@ -96,7 +96,7 @@ fn one_step<const D: usize>(
 /// Counts the steps that a time step of a method has.
 fn step_count(method: Method) -> usize {
     match method {
-        Method::Otm => otm::STEPS,
+        Method::Otm(_) => otm::STEPS,
         Method::Mpm(integrator) => match integrator {
             Integrator::Newmark(_) => newmark::STEPS,
             Integrator::ForwardEuler(_) | Integrator::CorrectedEuler => euler::STEPS,
@@ -109,7 +109,7 @@ fn step_count(method: Method) -> usize {
 /// the forces of k+1, the others those of k.
 pub fn time_of_loads(method: Method, dt: f64, t: f64) -> f64 {
     match method {
-        Method::Otm => t,
+        Method::Otm(_) => t,
         Method::Mpm(integrator) => match integrator {
             Integrator::Newmark(_) => t,
             Integrator::ForwardEuler(_)

@@ -13,16 +13,16 @@ use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::{Nodes, Particles};
 use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
+use crate::method::reading::NodalMass;
 use nalgebra::SVector;
 
 /// OTM has so many steps.
 pub const STEPS: usize = 7;
 
 // ANCHOR: otm_start
-/// Fills the nodes at k = 0: m_a = Σ_p m_p N_ap, once and for all, and v_a = Σ_p m_p v_p
-/// N_ap / m_a.
+/// Fills the nodes at k = 0: m_a = Σ_p m_p N_ap and v_a = Σ_p m_p v_p N_ap / m_a.
 ///
-/// Since the nodal mass stays, so does the momentum, to round-off.
+/// Where the nodal mass stays what it is here, so does the momentum, to round-off.
 pub fn start<const D: usize>(state: &mut State<D>, model: &Model<D>) -> Result<(), Breakdown> {
     tabulate_again(state, model)?;
     let State { particle, node, shape, .. } = state;
@@ -45,6 +45,7 @@ pub fn step<const D: usize>(
     n: usize,
     state: &mut State<D>,
     model: &Model<D>,
+    masses: NodalMass,
     dt: f64,
     t: f64,
 ) -> Result<(), Breakdown> {
@@ -54,7 +55,12 @@ pub fn step<const D: usize>(
         2 => move_nodes(node, dt),
         3 => move_particles(particle, node, shape, dt), // N_ap of k
         4 => deform_particles(particle, node, shape, model, dt)?, // N_ap of k
-        5 => tabulate_again(state, model)?,             // N_ap at k+1
+        5 => {
+            tabulate_again(state, model)?; // N_ap at k+1
+            if masses != NodalMass::Kept {
+                renew_masses(state, masses)?;
+            }
+        }
         6 => {
             node.f.fill(SVector::zeros());
             balance_forces(node, particle, shape, model, t);
@@ -133,3 +139,33 @@ pub fn tabulate_again<const D: usize>(
     let nodes = scattered::Places { x: &node.x, h: &model.grid.h };
     scattered::fill_from_nodes(shape, scratch, lambda, &model.basis, nodes, x)
 }
+
+// ANCHOR: renew_masses
+/// Step 5 may also renew the masses, m_a = Σ_p m_p N_ap (kg) with the new functions: then either
+/// v_a or m_a v_a stays.
+///
+/// Errors: [`Breakdown::NoMass`] where no particle sees a node any more.
+pub fn renew_masses<const D: usize>(
+    State { particle, node, shape, .. }: &mut State<D>,
+    masses: NodalMass,
+) -> Result<(), Breakdown> {
+    for a in 0..node.len() {
+        node.p[a] = node.v[a] * node.m[a];
+    }
+    node.m.fill(0.0);
+    for p in 0..particle.len() {
+        for (a, N_ap, _) in shape.of(p) {
+            node.m[a] += particle.m[p] * N_ap;
+        }
+    }
+    if let Some(node) = node.m.iter().position(|m_a| *m_a == 0.0) {
+        return Err(Breakdown::NoMass { node });
+    }
+    if masses == NodalMass::RenewedKeepingMomentum {
+        for a in 0..node.len() {
+            node.v[a] = node.p[a] / node.m[a];
+        }
+    }
+    Ok(())
+}
+// ANCHOR_END: renew_masses

@@ -67,7 +67,7 @@ impl Critical {
 /// Errors: [`Breakdown`] of the first table, or of a singular mass matrix.
 pub fn critical(scene: &Scene) -> Result<Critical, Breakdown> {
     let start = predicted(scene, 0.0)?;
-    let moves = scene.method != Method::Otm && scene.travel() > MOVES;
+    let moves = !scene.method.moves_nodes() && scene.travel() > MOVES;
     let over_offsets = if moves { Some(over_offsets(scene)?.min(start)) } else { None };
     Ok(Critical { start, over_offsets })
 }
@@ -89,7 +89,7 @@ fn limit_to<const D: usize>(tolerance: f64, state: &mut State<D>, model: &Model<
 /// Tabulates a state and gives its nodes their masses.
 fn prepare<const D: usize>(state: &mut State<D>, model: &Model<D>) -> Result<(), Breakdown> {
     match model.method {
-        Method::Otm => otm::start(state, model),
+        Method::Otm(_) => otm::start(state, model),
         Method::Mpm(_) => {
             let State { particle, node, shape, mass, scratch, .. } = state;
             steps::tabulate(shape, scratch, particle, model)?;
@@ -198,7 +198,7 @@ pub fn touches<const D: usize>(
 ) -> Result<Vec<Offset<D>>, Breakdown> {
     let filtered = OfScheme::of(model.method, model.kinematics) == OfScheme::Filtered;
     let smooth = (filtered && model.mass == Mass::Lumped) || !model.basis.switches_nodes_on();
-    if smooth || model.method == Method::Otm {
+    if smooth || model.method.moves_nodes() {
         return Ok(Vec::new());
     }
     let start = moved(scene, model, offset)?;

@@ -224,7 +224,9 @@ impl<'a, const D: usize> Watch<'a, D> {
         own.particle.x.copy_from_slice(&state.particle.x);
         own.particle.rho.copy_from_slice(&state.particle.rho);
         match model.method {
-            Method::Otm | Method::Mpm(Integrator::Newmark(_)) => own.shape.clone_from(&state.shape),
+            Method::Otm(_) | Method::Mpm(Integrator::Newmark(_)) => {
+                own.shape.clone_from(&state.shape)
+            }
             Method::Mpm(_) => {
                 own.particle.lambda.clone_from(&state.particle.lambda);
                 steps::tabulate(&mut own.shape, &mut own.scratch, &mut own.particle, model)?;
