@@ -3,7 +3,6 @@
 
 use crate::support::*;
 use lme_mpm::method::breakdown::Breakdown;
-use lme_mpm::method::choice::Method;
 use lme_mpm::method::model::{Model, State};
 use lme_mpm::method::time::steps;
 use lme_mpm::run::stability;

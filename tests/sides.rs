@@ -2,7 +2,6 @@
 
 use crate::support::*;
 use approx::assert_relative_eq;
-use lme_mpm::method::choice::Method;
 use lme_mpm::method::continuum::mass::{ConsistentMass, MassMatrix};
 use lme_mpm::method::continuum::sums;
 use lme_mpm::method::model::{Model, State};
