@@ -42,6 +42,9 @@ pub enum Command {
         /// No progress bar and no summary
         #[arg(long, short)]
         quiet: bool,
+        /// Take warnings for errors: the results are written, and the exit code is 1
+        #[arg(long)]
+        strict: bool,
     },
     /// List the shipped scenes, print one to start from, or the schema of scenes
     #[command(

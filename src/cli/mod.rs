@@ -15,6 +15,7 @@ use lme_mpm::output::summary::SummaryLine;
 use lme_mpm::output::{files, report};
 use lme_mpm::port::check::{self, Tolerance};
 use lme_mpm::port::points::{self, Points};
+use lme_mpm::run::Warning;
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
 use lme_mpm::scene::{DYKA, SHIPPED, Scene, declare, shipped};
@@ -32,9 +33,9 @@ const RED: anstyle::Style =
 pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         None => built_in(),
-        Some(Command::Run { scene, out, set, quiet }) => {
-            files::scene(&scene, &set).and_then(|read| run(&read, Some(&scene), out, quiet))
-        }
+        Some(Command::Run { scene, out, set, quiet, strict }) => files::scene(&scene, &set)
+            .and_then(|read| run(&read, Some(&scene), out, quiet))
+            .and_then(|warnings| warn(&warnings, strict)),
         Some(Command::Scenes { ask }) => scenes(ask),
         Some(Command::Completions { shell }) => completions(shell),
         Some(Command::Exact { scene, points }) => exact(&scene, &points),
@@ -73,10 +74,28 @@ pub fn main() -> ExitCode {
 
 fn built_in() -> Result<(), Fault> {
     let scene = lme_mpm::run::parse("dyka", "dyka.toml (built in)", DYKA, &[])?;
-    run(&scene, None, None, false)
+    warn(&run(&scene, None, None, false)?, false)
 }
 
-fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, quiet: bool) -> Result<(), Fault> {
+/// Says what a run is warned of; with `strict` that is an error.
+fn warn(warnings: &[Warning], strict: bool) -> Result<(), Fault> {
+    if strict && !warnings.is_empty() {
+        let list: Vec<String> = warnings.iter().map(Warning::to_string).collect();
+        return Err(Fault::Warned(list.join("\n")));
+    }
+    for warning in warnings {
+        writeln!(anstream::stderr(), "{BOLD}warning{BOLD:#}: {warning}").ok();
+    }
+    Ok(())
+}
+
+/// Runs a scene, writes its results, and gives what they are warned of.
+fn run(
+    scene: &Scene,
+    path: Option<&Path>,
+    out: Option<PathBuf>,
+    quiet: bool,
+) -> Result<Vec<Warning>, Fault> {
     let dir = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
     if let Some(path) = path {
         let endings = [".csv", ".svg", ".vtu", ".pvd"];
@@ -103,7 +122,7 @@ fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, quiet: bool) ->
         }
     });
     bar.finish_and_clear();
-    let lines = lines?;
+    let (lines, warnings) = lines?;
     if !quiet {
         let text = format!(
             "{BOLD}{}{BOLD:#}\n{}\nwritten to {}\n",
@@ -113,7 +132,7 @@ fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, quiet: bool) ->
         );
         print_bytes(text.as_bytes())?;
     }
-    Ok(())
+    Ok(warnings)
 }
 
 /// Lays out the summary as a table for the terminal.

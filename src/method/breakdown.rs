@@ -65,10 +65,15 @@ pub enum Breakdown {
     )]
     NoMass { node: usize },
     #[error(
-        "the run blew up: its energy is {ratio:e} times what start and loads gave it, and \
-         particle {particle} holds the largest share"
+        "the energy is {share:.2e} of the largest that start and loads have given above what they \
+         gave, and check.energy allows {bound}; particle {particle} holds the largest share"
     )]
-    Diverged { particle: usize, ratio: f64 },
+    Diverged { particle: usize, share: f64, bound: f64 },
+    #[error(
+        "particle {particle} has turned by {angle:.3} rad, and check.rotation allows {bound}: the \
+         rate law does not turn its stress; body.law = \"neo-hookean\" or \"hencky\" does"
+    )]
+    Turned { particle: usize, angle: f64, bound: f64 },
     #[error(
         "the time step {dt:e} s is beyond its limit, which was {start:e} s at the start and is {now:e} \
          s where the particles stand now; what grows has its largest share in particle {particle}; \

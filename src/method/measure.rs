@@ -109,6 +109,29 @@ pub fn angular_momentum<const D: usize>(Carriers { m, x, v }: &Carriers<D>) -> V
     }
 }
 
+/// Sums m |x − x_c| |v − v_c| about the centre of mass x_c with its velocity v_c (kg m²/s), the
+/// most that the angular momentum could be by these places and speeds; at least a billionth of
+/// the sum with |v| itself, below which round-off is.
+pub fn turning<const D: usize>(carriers: &Carriers<D>) -> f64 {
+    let Carriers { m, x, v } = carriers;
+    let mass = total(m.len(), 0.0, |n| m[n]);
+    let centre = total(m.len(), SVector::zeros(), |n| x[n] * m[n]) / mass;
+    let mean = momentum(carriers) / mass;
+    let size = |r: SVector<f64, D>| libm::sqrt(r.dot(&r));
+    let own = total(m.len(), 0.0, |n| m[n] * size(x[n] - centre) * size(v[n] - mean));
+    let whole = total(m.len(), 0.0, |n| m[n] * size(x[n] - centre) * size(v[n]));
+    own.max(1e-9 * whole)
+}
+
+/// Finds the particle that has turned most, and by which angle (rad); `None` where that is not
+/// kept.
+pub fn largest_rotation<const D: usize>(particle: &Particles<D>) -> Option<(usize, f64)> {
+    let planes = particle.turned.chunks(Particles::<D>::PLANES.max(1));
+    let square = |angles: &[f64]| angles.iter().map(|angle| angle * angle).sum::<f64>();
+    let (p, square) = planes.map(square).enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some((p, libm::sqrt(square)))
+}
+
 /// Sums m v (kg m/s).
 pub fn momentum<const D: usize>(Carriers { m, v, .. }: &Carriers<D>) -> SVector<f64, D> {
     total(m.len(), SVector::zeros(), |n| v[n] * m[n])

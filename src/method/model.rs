@@ -54,7 +54,11 @@ impl<const D: usize> Model<D> {
             Method::Otm(_) => 0,
         };
         let of_map = if self.keeps_gradient() { matrix } else { 0 }; // G_p
-        let of_law = if self.law.law.is_hyperelastic() { matrix } else { 0 }; // F_p
+        let of_law = if self.law.law.is_hyperelastic() {
+            matrix // F_p
+        } else {
+            Particles::<D>::PLANES * size_of::<f64>() // how far it has turned
+        };
         Particles::<D>::BYTES + of_basis + of_method + of_map + of_law
     }
 }
@@ -100,7 +104,9 @@ impl<const D: usize> State<D> {
         if model.keeps_gradient() {
             particle.G = vec![SMatrix::zeros(); particles];
         }
-        if model.law.law.is_hyperelastic() && particle.F.is_empty() {
+        if !model.law.law.is_hyperelastic() {
+            particle.turned = vec![0.0; particles * Particles::<D>::PLANES];
+        } else if particle.F.is_empty() {
             particle.F = vec![SMatrix::identity(); particles];
         }
         if model.basis.has_multiplier() {

@@ -3,9 +3,9 @@
 use crate::method::cost::Cost;
 use crate::method::exact::mode::Mode;
 use crate::method::measure::rms;
-use crate::run::Outcome;
 use crate::run::columns::{of_stress, per_axis, upper_half};
 use crate::run::stability::Critical;
+use crate::run::{Outcome, Seen};
 use crate::scene::{Motion, Probe, Quantity, Scene, wave_speed};
 use crate::setup;
 
@@ -101,6 +101,7 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<SummaryLin
         field_lines(&mut lines, &scales, scene.dimension(), outcome);
     }
     energy_lines(&mut lines, scene, outcome);
+    warning_lines(&mut lines, outcome);
     lines.push(SummaryLine::new("time_step", outcome.dt, "s"));
     lines.push(SummaryLine::new("courant_number", scene.courant_number(), "1"));
     lines.push(SummaryLine::new("wall_time", wall_time, "s"));
@@ -201,6 +202,25 @@ fn energy_lines(lines: &mut Vec<SummaryLine>, scene: &Scene, outcome: &Outcome) 
         let drift: Vec<f64> = total.iter().map(|energy| energy / first - 1.0).collect();
         add("energy_drift", last / first - 1.0, "1");
         add("energy_drift_largest", peak(&drift), "1");
+    }
+}
+
+/// Adds the largest growth of the energy, and what the run is warned of, with particle, step and
+/// time.
+fn warning_lines(lines: &mut Vec<SummaryLine>, outcome: &Outcome) {
+    lines.push(SummaryLine::new("energy_growth_largest", outcome.growth, "1"));
+    for warning in &outcome.warnings {
+        let (name, value, unit) = warning.named();
+        lines.push(SummaryLine::new(name, value, unit));
+        if let Some(Seen { particle, moment, .. }) = warning.seen() {
+            for (what, value, unit) in [
+                ("particle", particle as f64, "1"),
+                ("step", moment.step as f64, "1"),
+                ("time", moment.time, "s"),
+            ] {
+                lines.push(SummaryLine::new(format!("{name}_{what}"), value, unit));
+            }
+        }
     }
 }
 

@@ -1,21 +1,25 @@
 //! The time loop carries a scene to its end: scene → state → step, step, … → history.
 
 pub mod columns;
+mod guards;
 mod open;
 mod outcome;
 mod particles;
 mod recorder;
 pub mod stability;
 pub mod table;
+mod warning;
 
 pub use open::parse;
 pub use outcome::{Frame, Outcome, Stopped};
+pub use warning::{Seen, Warning};
 
 use crate::method::breakdown::{BrokenDown, Moment};
 use crate::method::cost::Cost;
 use crate::method::time;
 use crate::scene::Scene;
 use crate::setup;
+use guards::Guards;
 use recorder::Recorder;
 use stability::{Critical, Watch};
 
@@ -54,16 +58,19 @@ fn run_in<const D: usize>(
     let mut state = setup::initial_state(&model, scene);
     let mut recorder = Recorder::new(scene, &model, &state);
     let mut watch = Watch::new(scene, &model, &state, limit);
+    let mut guards = None;
     let mut march = || -> Result<(), BrokenDown> {
         let start = Moment::START;
         time::start(&mut state, &model, &mut |_, _| {}).map_err(|what| what.at(start))?;
-        recorder.record(&state, start).map_err(|what| what.at(start))?;
+        let guards = guards.insert(Guards::new(scene, &model, &state));
+        recorder.record(&state, start, guards.work()).map_err(|what| what.at(start))?;
         for step in 1..=model.steps {
             let moment = Moment::of(step, model.dt);
             time::advance(&mut state, &model, moment.time, &mut |_, _| {})
-                .and_then(|()| recorder.follow(&state, moment))
+                .and_then(|()| guards.follow(&state, moment))
+                .and_then(|()| recorder.follow(&state, moment, guards.work()))
                 .and_then(|()| match &mut watch {
-                    Some(watch) => watch.follow(&state, moment, &|| recorder.balance(&state)),
+                    Some(watch) => watch.follow(&state, moment, &|| guards.balance(&state)),
                     None => Ok(()),
                 })
                 .map_err(|what| what.at(moment))?;
@@ -81,6 +88,8 @@ fn run_in<const D: usize>(
         particles: recorder.particles(&state, end.time),
         frames: recorder.frames,
         history: recorder.history,
+        growth: guards.as_ref().map_or(0.0, Guards::growth),
+        warnings: guards.map_or(Vec::new(), |guards| guards.warnings()),
         cost: Cost { bytes_per_particle, limit_applications, ..state.cost() },
         dt: model.dt,
     })

@@ -1,6 +1,7 @@
 //! This is what comes out of a run.
 
 use super::table::Table;
+use super::warning::Warning;
 use crate::method::breakdown::BrokenDown;
 use crate::method::cost::Cost;
 use thiserror::Error;
@@ -14,6 +15,11 @@ pub struct Outcome {
     pub particles: Table,
     /// The particles at the recorded steps, if the scene asks for them.
     pub frames: Vec<Frame>,
+    /// The largest growth of the energy beyond what start and loads gave, as a share of the
+    /// largest that they have given (–).
+    pub growth: f64,
+    /// What the result may not be trusted for.
+    pub warnings: Vec<Warning>,
     pub cost: Cost,
     /// Δt (s).
     pub dt: f64,

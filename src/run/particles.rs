@@ -24,7 +24,7 @@ pub fn table<const D: usize>(
             table.put(|| per_axis("position", D, i), x);
         }
         for i in 0..D {
-            table.put(|| per_axis("displacement", D, i), particle.x[p][i] - reference[p][i]);
+            table.put(|| per_axis("displacement", D, i), particle.u[p][i]);
         }
         for i in 0..D {
             table.put(|| per_axis("velocity", D, i), particle.v[p][i]);

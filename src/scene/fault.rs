@@ -103,6 +103,8 @@ pub enum Fault {
     Alone { place: String, problem: String },
     #[error("{0}")]
     Differs(String),
+    #[error("{0}")]
+    Warned(String),
     #[error("{broken}\n{advice}")]
     Run {
         broken: BrokenDown,
@@ -112,11 +114,11 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Gives the exit code: 1 for a run that broke down or a port that differs, 2 for input or
+    /// Gives the exit code: 1 for a run that broke down or is warned of where that is an error, or a port that differs, 2 for input or
     /// output that cannot be used.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Fault::Run { .. } | Fault::Differs(_) => 1,
+            Fault::Run { .. } | Fault::Differs(_) | Fault::Warned(_) => 1,
             _ => 2,
         }
     }

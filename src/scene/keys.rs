@@ -197,6 +197,24 @@ pub const KEYS: &[Key] = &[
         "The cells that particles may move until the limit of Δt is looked at again; 0 for no watch",
     ),
     must("time.end", One(positive("s")), "The end of the run"),
+    may(
+        "check",
+        Table,
+        Without::Says("as below"),
+        "What ends a run whose result is not to be trusted",
+    ),
+    may(
+        "check.energy",
+        One(positive("")),
+        Without::Number(0.25),
+        "The energy may grow by this share of the largest that start and loads have given",
+    ),
+    may(
+        "check.rotation",
+        One(positive("rad")),
+        Without::Number(0.5),
+        "The material may turn by this angle with the rate law in 2D and 3D",
+    ),
     may("boundary", Table, Without::Says("free sides"), "The sides of the box")
         .besides("left, right (x); bottom, top (y); back, front (z)"),
     may("boundary.<side>", ChoiceOrTable(STATES), Without::Word("free"), "What holds this side"),

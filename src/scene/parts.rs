@@ -19,6 +19,7 @@ pub struct Scene {
     pub grid: GridSpec,
     pub basis: Basis,
     pub time: Time,
+    pub check: Check,
     /// For each axis its lower and upper side.
     pub boundary: Vec<[Side; 2]>,
     pub motion: Motion,
@@ -29,6 +30,15 @@ pub struct Scene {
     pub every: usize,
     /// Write the particles for ParaView whenever a step is recorded.
     pub vtk: bool,
+}
+
+/// A run may be off by so much before it ends by name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Check {
+    /// The growth of the energy, as a share of the largest that start and loads have given (–).
+    pub energy: f64,
+    /// How far the material may turn with the rate law (rad).
+    pub rotation: f64,
 }
 
 /// The body is a box of elastic material.

@@ -63,6 +63,10 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
     let mass = values.choose("mass", &masses)?;
     let body = body(values)?;
     let time = time(values)?;
+    let check = Check {
+        energy: values.number("check.energy")?,
+        rotation: values.number("check.rotation")?,
+    };
     let method = match is_otm {
         true => Method::Otm(nodal_mass(values)?),
         false => Method::Mpm(integrator(values)?),
@@ -89,6 +93,7 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         grid,
         basis,
         time,
+        check,
         boundary,
         motion,
         body_force,

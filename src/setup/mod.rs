@@ -96,7 +96,7 @@ fn displace<const D: usize>(state: &mut State<D>, moved: &Moved<D>) {
     for p in 0..particle.len() {
         let X = particle.x[p];
         let (fields, F) = (moved.at(&X, 0.0), moved.deformation(&X, 0.0));
-        particle.x[p] += fields.displacement;
+        particle.advance(p, fields.displacement);
         particle.sigma[p] = fields.stress;
         particle.rho[p] /= 1.0 + volume_change(&(F - SMatrix::identity()));
         if let Some(F_p) = particle.F.get_mut(p) {

@@ -53,10 +53,10 @@ impl<const D: usize> Traction<D> {
 
 impl<const D: usize> Loads<D> {
     /// Gives Σ_p f_p · Δx_p, the work of the loads over a step from `t` to `t + dt` (J),
-    /// with the mean of both ends; `before` holds x_p at `t` (m).
+    /// with the mean of both ends; `before` holds u_p at `t` (m).
     ///
-    /// Taken with what the particles have moved by, not with their velocity:
-    /// beside a fixed node the two differ.
+    /// Taken with what the particles have moved by, not with their velocity: beside a fixed node
+    /// the two differ. u_p has its digits where x_p would have lost them.
     pub fn work(
         &self,
         particle: &Particles<D>,
@@ -68,12 +68,12 @@ impl<const D: usize> Loads<D> {
         if let Some(body) = &self.body {
             for p in 0..particle.len() {
                 let mean = (body.at(p, t) + body.at(p, t + dt)) * 0.5;
-                work += mean.dot(&(particle.x[p] - before[p])) * particle.m[p];
+                work += mean.dot(&(particle.u[p] - before[p])) * particle.m[p];
             }
         }
         if let Some(traction) = &self.traction {
             for ((p, force), (_, next)) in traction.at(t).zip(traction.at(t + dt)) {
-                work += ((force + next) * 0.5).dot(&(particle.x[p] - before[p]));
+                work += ((force + next) * 0.5).dot(&(particle.u[p] - before[p]));
             }
         }
         work

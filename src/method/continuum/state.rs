@@ -16,6 +16,9 @@ pub struct Particles<const D: usize> {
     pub m: Vec<f64>,
     /// x_p, position (m).
     pub x: Vec<SVector<f64, D>>,
+    /// u_p, displacement from the material point (m), summed up beside x_p: a small motion has
+    /// digits here that x_p has no room for.
+    pub u: Vec<SVector<f64, D>>,
     /// v_p, velocity (m/s).
     pub v: Vec<SVector<f64, D>>,
     /// ρ_p, density (kg/m³).
@@ -32,6 +35,9 @@ pub struct Particles<const D: usize> {
     pub G: Vec<SMatrix<f64, D, D>>,
     /// F_p, deformation gradient (–); of hyperelastic laws only.
     pub F: Vec<SMatrix<f64, D, D>>,
+    /// Sums of ½ (G_ji − G_ij), how far each particle has turned in each plane (rad); of the
+    /// rate law in 2D and 3D only.
+    pub turned: Vec<f64>,
 }
 // ANCHOR_END: particles
 
@@ -92,10 +98,13 @@ impl<const D: usize> Particles<D> {
         Carriers { m: &self.m, x: &self.x, v: &self.v }
     }
 
-    /// Every particle carries so many bytes of state, whatever the scheme: 48 in 1D, where
+    /// A body turns in so many planes: 0, 1 or 3.
+    pub const PLANES: usize = D * (D - 1) / 2;
+
+    /// Every particle carries so many bytes of state, whatever the scheme: 56 in 1D, where
     /// every tensor is a single number.
     pub const BYTES: usize = 2 * size_of::<f64>()
-        + 2 * size_of::<SVector<f64, D>>()
+        + 3 * size_of::<SVector<f64, D>>()
         + 2 * size_of::<SMatrix<f64, D, D>>();
 
     /// Makes particles without mass, at rest and free of stress at positions `x` (m), with
@@ -105,6 +114,7 @@ impl<const D: usize> Particles<D> {
         Particles {
             m: vec![0.0; n],
             x,
+            u: vec![SVector::zeros(); n],
             v: vec![SVector::zeros(); n],
             rho: vec![rho; n],
             sigma: vec![SMatrix::zeros(); n],
@@ -113,6 +123,30 @@ impl<const D: usize> Particles<D> {
             a: Vec::new(),
             G: Vec::new(),
             F: Vec::new(),
+            turned: Vec::new(),
+        }
+    }
+
+    /// Moves particle p by `way` (m).
+    #[inline(always)]
+    pub fn advance(&mut self, p: usize, way: SVector<f64, D>) {
+        self.x[p] += way;
+        self.u[p] += way;
+    }
+
+    /// Adds to how far particle p has turned the skew part of G_p, the gradient of a step's
+    /// displacement, where that is kept.
+    #[inline(always)]
+    pub fn turn(&mut self, p: usize, G_p: &SMatrix<f64, D, D>) {
+        if self.turned.is_empty() {
+            return;
+        }
+        let mut n = p * Self::PLANES;
+        for i in 0..D {
+            for j in i + 1..D {
+                self.turned[n] += 0.5 * (G_p[(j, i)] - G_p[(i, j)]);
+                n += 1;
+            }
         }
     }
 

@@ -44,7 +44,9 @@ pub fn deform<const D: usize>(
         particle.rho[p] /= J;
         match material.law {
             Law::Rate => {
-                particle.d_eps[p] = law::midpoint_strain(&particle.G[p]).ok_or(inverted)?;
+                let G_p = particle.G[p];
+                particle.turn(p, &G_p);
+                particle.d_eps[p] = law::midpoint_strain(&G_p).ok_or(inverted)?;
                 particle.sigma[p] += material.stress_increment(&particle.d_eps[p]);
             }
             Law::NeoHookean | Law::Hencky => {

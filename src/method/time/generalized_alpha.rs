@@ -112,15 +112,15 @@ pub fn move_particles<const D: usize>(
     dt: f64,
 ) {
     for p in 0..particle.len() {
-        let (mut v_p, mut x_p, mut a_p) = (SVector::zeros(), SVector::zeros(), SVector::zeros());
+        let (mut v_p, mut u_p, mut a_p) = (SVector::zeros(), SVector::zeros(), SVector::zeros());
         for (I, N_Ip, _) in shape.of(p) {
             let (old, new) = (node.a_last[I], node.a_next[I]);
             v_p += (old * (1.0 - gamma) + new * *gamma) * N_Ip;
-            x_p += (node.v[I] * dt + (old * (0.5 - beta) + new * *beta) * (dt * dt)) * N_Ip;
+            u_p += (node.v[I] * dt + (old * (0.5 - beta) + new * *beta) * (dt * dt)) * N_Ip;
             a_p += new * N_Ip;
         }
         particle.v[p] += v_p * dt;
-        particle.x[p] += x_p;
+        particle.advance(p, u_p);
         particle.a[p] = a_p;
     }
 }

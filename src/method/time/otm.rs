@@ -97,7 +97,7 @@ pub fn move_particles<const D: usize>(
     dt: f64,
 ) {
     for p in 0..particle.len() {
-        particle.x[p] += sums::interpolate(&node.v, shape, p) * dt;
+        particle.advance(p, sums::interpolate(&node.v, shape, p) * dt);
     }
 }
 

@@ -31,7 +31,7 @@ pub fn predict<const D: usize>(
 ) {
     for p in 0..particle.len() {
         let (v_p, a_p) = (sums::interpolate(&node.v, shape, p), particle.a[p]);
-        particle.x[p] += v_p * dt + a_p * (0.5 * dt * dt);
+        particle.advance(p, v_p * dt + a_p * (0.5 * dt * dt));
         particle.v[p] += a_p * ((1.0 - NEWMARK_GAMMA) * dt);
     }
 }
@@ -109,7 +109,10 @@ pub fn increment_strain<const D: usize>(
     for p in 0..particle.len() {
         let grad_v = sums::velocity_gradient(node, shape, p);
         match particle.G.get_mut(p) {
-            None => particle.d_eps[p] = law::symmetric_part(&grad_v) * dt,
+            None => {
+                particle.d_eps[p] = law::symmetric_part(&grad_v) * dt;
+                particle.turn(p, &(grad_v * dt));
+            }
             Some(G_p) => *G_p = grad_v * dt,
         }
     }
@@ -251,7 +254,7 @@ pub fn move_with_nodes<const D: usize>(
 ) {
     for p in 0..particle.len() {
         particle.v[p] += sums::interpolate(&node.a, shape, p) * dt;
-        particle.x[p] += sums::interpolate(&node.v, shape, p) * dt;
+        particle.advance(p, sums::interpolate(&node.v, shape, p) * dt);
     }
 }
 
