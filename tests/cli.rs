@@ -42,7 +42,7 @@ fn run_writes_complete_files() {
     assert_eq!(read("particles.csv").lines().count(), 1 + 80);
     assert!(read("summary.csv").starts_with("quantity,value,unit\nvelocity_end_rms,0.82"));
     assert!(read("cost.csv").contains("particle_node_pairs,51360,1\n"));
-    assert!(read("cost.csv").contains("bytes_per_particle,56,B\n"));
+    assert!(read("cost.csv").contains("bytes_per_particle,64,B\n"));
     let svg = read("velocity_end.svg");
     for word in ["<svg", "time t [µs]", "velocity nearest to 0.1333 m [m/s]", "exact", "computed"]
     {

@@ -232,7 +232,10 @@ fn extremes_of_the_time_step() {
         let stopped = outcome(&dyka(&[sets, &wild].concat())).unwrap_err();
         let grown = matches!(
             stopped.broken.breakdown,
-            Breakdown::Diverged { .. } | Breakdown::Inverted { .. } | Breakdown::LeftGrid { .. }
+            Breakdown::Diverged { .. }
+                | Breakdown::BeyondLimit { .. }
+                | Breakdown::Inverted { .. }
+                | Breakdown::LeftGrid { .. }
         );
         assert!(grown && stopped.broken.moment.step > 0, "{name}: {}", stopped.broken);
     }

@@ -135,7 +135,7 @@ fn extremes_of_frugality() {
             assert_eq!(count > 0, needs.contains(&need), "{name}: {cost:?}");
         }
         let d = dimension as u64;
-        let mut bytes = 8 * (2 + 2 * d + 2 * d * d);
+        let mut bytes = 8 * (2 + 3 * d + 2 * d * d + d * (d - 1) / 2);
         for (need, more) in [(MaxEnt, 3 * d), (Acceleration, d), (Deformation, d * d)] {
             bytes += if needs.contains(&need) { 8 * more } else { 0 };
         }

@@ -413,7 +413,7 @@ fn breakdown_blows_up() {
     let sets = ["--set", "time.cfl=1.9", "--set", "time.allow_unstable=true"];
     let output = program(&dir, &[&["run", DYKA, "--out", "o"][..], &sets].concat());
     let words =
-        ["at step ", "t = ", "the run blew up", "particle ", "Courant number", "smaller time.cfl"];
+        ["at step ", "t = ", "check.energy", "particle ", "Courant number", "smaller time.cfl"];
     assert_fails(&output, 1, &words);
     assert_eq!(files(&dir.join("o")), ["history.failed.csv"]);
     let history = fs::read_to_string(dir.join("o/history.failed.csv")).unwrap();
@@ -439,7 +439,7 @@ fn breakdown_beyond_the_limit() {
     assert_eq!(files(&dir.join("o")), ["history.failed.csv"]);
     let off = ["--set", "time.watch=0"];
     let output = program(&dir, &[&["run", FLIGHT, "--out", "o"][..], &sets, &off].concat());
-    assert_fails(&output, 1, &["the run blew up"]);
+    assert_fails(&output, 1, &["check.energy"]);
 }
 
 /// Recorded seldom, the blow-up is still caught, by the particle.

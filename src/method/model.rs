@@ -97,18 +97,17 @@ impl<const D: usize> State<D> {
                 }
             }
             Method::Mpm(_) => {}
-            Method::Otm(_) => {
-                node.x = x;
-            }
+            Method::Otm(_) => node.x = x,
         }
         if model.keeps_gradient() {
             particle.G = vec![SMatrix::zeros(); particles];
         }
-        if !model.law.law.is_hyperelastic() {
-            particle.turned = vec![0.0; particles * Particles::<D>::PLANES];
-        } else if particle.F.is_empty() {
+        let hyperelastic = model.law.law.is_hyperelastic();
+        if hyperelastic && particle.F.is_empty() {
             particle.F = vec![SMatrix::identity(); particles];
         }
+        particle.turned =
+            vec![0.0; if hyperelastic { 0 } else { particles * Particles::<D>::PLANES }];
         if model.basis.has_multiplier() {
             particle.lambda = vec![Multiplier::default(); particles];
         }

@@ -5,7 +5,7 @@ use crate::method::exact::mode::Mode;
 use crate::method::measure::rms;
 use crate::run::columns::{of_stress, per_axis, upper_half};
 use crate::run::stability::Critical;
-use crate::run::{Outcome, Seen};
+use crate::run::{Outcome, Worst};
 use crate::scene::{Motion, Probe, Quantity, Scene, wave_speed};
 use crate::setup;
 
@@ -212,7 +212,7 @@ fn warning_lines(lines: &mut Vec<SummaryLine>, outcome: &Outcome) {
     for warning in &outcome.warnings {
         let (name, value, unit) = warning.named();
         lines.push(SummaryLine::new(name, value, unit));
-        if let Some(Seen { particle, moment, .. }) = warning.seen() {
+        if let Some(Worst { particle, moment, .. }) = warning.seen() {
             for (what, value, unit) in [
                 ("particle", particle as f64, "1"),
                 ("step", moment.step as f64, "1"),

@@ -3,8 +3,8 @@
 //! What is somewhat off is warned of, and what is far off ends the run; neither depends on what
 //! is recorded.
 
-use super::stability::Balance;
-use super::warning::{Seen, Warning};
+use super::stability::{Balance, Critical, Watch};
+use super::warning::{Warning, Worst};
 use crate::method::breakdown::{Breakdown, Moment};
 use crate::method::continuum::state::Carriers;
 use crate::method::measure;
@@ -44,10 +44,11 @@ pub struct Guards<'a, const D: usize> {
     /// Angular momentum at the start, and what it could be by the speeds (kg m²/s); where
     /// nothing from outside turns the body.
     spin: Option<(Vec<f64>, f64)>,
+    watch: Option<Watch<'a, D>>,
     locking: Option<Warning>,
-    growth: Option<Seen>,
-    turned: Option<Seen>,
-    lost: Option<Seen>,
+    growth: Option<Worst>,
+    turned: Option<Worst>,
+    lost: Option<Worst>,
 }
 
 /// This is the work that the loads have done so far.
@@ -62,8 +63,14 @@ struct LoadWork<const D: usize> {
 }
 
 impl<'a, const D: usize> Guards<'a, D> {
-    /// Makes the guards of a run that is about to begin with `state`, whose scheme is prepared.
-    pub fn new(scene: &Scene, model: &'a Model<D>, state: &State<D>) -> Self {
+    /// Makes the guards of a run that is about to begin with `state`, whose scheme is prepared, and
+    /// of which the limit of Δt may be known.
+    pub fn new(
+        scene: &'a Scene,
+        model: &'a Model<D>,
+        state: &State<D>,
+        limit: Option<Critical>,
+    ) -> Self {
         let carriers = state.carriers(model.method);
         let unit = unit(&carriers, model.loads.is_some());
         let start = energy(model, state, unit);
@@ -82,6 +89,7 @@ impl<'a, const D: usize> Guards<'a, D> {
             most: start,
             work,
             spin: free.then(|| (measure::angular_momentum(&carriers), measure::turning(&carriers))),
+            watch: Watch::new(scene, model, state, limit),
             locking: Warning::locking(scene),
             growth: None,
             turned: None,
@@ -89,10 +97,9 @@ impl<'a, const D: usize> Guards<'a, D> {
         }
     }
 
-    /// Takes up the step that ends at `moment`.
-    ///
-    /// Errors: [`Breakdown::Diverged`], [`Breakdown::Turned`], [`Breakdown::NotFinite`].
-    pub fn follow(&mut self, state: &State<D>, moment: Moment) -> Result<(), Breakdown> {
+    /// Adds what the loads have done in the step that ends at `moment`, and gives their work so
+    /// far (J).
+    pub fn add_work(&mut self, state: &State<D>, moment: Moment) -> Option<f64> {
         let (particle, dt) = (&state.particle, self.model.dt);
         if let (Some(work), Some(loads)) = (&mut self.work, &self.model.loads) {
             let step = loads.work(particle, &work.before, moment.time - dt, dt);
@@ -101,6 +108,18 @@ impl<'a, const D: usize> Guards<'a, D> {
             work.step = work.step.max(step.abs());
             work.before.copy_from_slice(&particle.u);
             self.most = self.most.max(self.start + work.sum);
+        }
+        self.work.as_ref().map(|work| work.sum)
+    }
+
+    /// Judges the state at `moment`, whose work has been added.
+    ///
+    /// Errors: [`Breakdown::Diverged`], [`Breakdown::Turned`], [`Breakdown::NotFinite`], and those
+    /// of the watch.
+    pub fn judge(&mut self, state: &State<D>, moment: Moment) -> Result<(), Breakdown> {
+        if let Some(mut watch) = self.watch.take() {
+            watch.follow(state, moment, &|| self.balance(state))?;
+            self.watch = Some(watch);
         }
         if !moment.step.is_multiple_of(EVERY) && moment.step != self.model.steps {
             return Ok(());
@@ -130,7 +149,7 @@ impl<'a, const D: usize> Guards<'a, D> {
         }
         if share > self.growth.map_or(0.0, |seen| seen.value) {
             let particle = if share > GROWTH { most_energetic() } else { 0 };
-            self.growth = Some(Seen { value: share, particle, moment });
+            self.growth = Some(Worst { value: share, particle, moment });
         }
         Ok(())
     }
@@ -145,7 +164,7 @@ impl<'a, const D: usize> Guards<'a, D> {
             return Err(Breakdown::Turned { particle, angle: value, bound: self.check.rotation });
         }
         if value > self.turned.map_or(0.0, |seen| seen.value) {
-            self.turned = Some(Seen { value, particle, moment });
+            self.turned = Some(Worst { value, particle, moment });
         }
         Ok(())
     }
@@ -158,7 +177,7 @@ impl<'a, const D: usize> Guards<'a, D> {
             now.iter().zip(start).map(|(now, start)| (now - start) * (now - start)).sum();
         let value = libm::sqrt(square) / scale;
         if value > self.lost.map_or(0.0, |seen| seen.value) {
-            self.lost = Some(Seen { value, particle: 0, moment });
+            self.lost = Some(Worst { value, particle: 0, moment });
         }
     }
 
@@ -169,9 +188,9 @@ impl<'a, const D: usize> Guards<'a, D> {
         Balance { gained, given: self.start + moved }
     }
 
-    /// Gives the work of the loads so far (J).
-    pub fn work(&self) -> Option<f64> {
-        self.work.as_ref().map(|work| work.sum)
+    /// Counts the passes over all particles that the watch has taken.
+    pub fn limit_applications(&self) -> u64 {
+        self.watch.as_ref().map_or(0, |watch| watch.applications)
     }
 
     /// Gives the largest growth of the energy, as a share of what was given (–).
@@ -181,7 +200,7 @@ impl<'a, const D: usize> Guards<'a, D> {
 
     /// Lists what is to be warned of.
     pub fn warnings(&self) -> Vec<Warning> {
-        let beyond = |seen: Option<Seen>, least: f64| seen.filter(|seen| seen.value > least);
+        let beyond = |seen: Option<Worst>, least: f64| seen.filter(|seen| seen.value > least);
         [
             self.locking,
             beyond(self.growth, GROWTH).map(Warning::EnergyGrew),

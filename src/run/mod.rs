@@ -12,7 +12,7 @@ mod warning;
 
 pub use open::parse;
 pub use outcome::{Frame, Outcome, Stopped};
-pub use warning::{Seen, Warning};
+pub use warning::{Warning, Worst};
 
 use crate::method::breakdown::{BrokenDown, Moment};
 use crate::method::cost::Cost;
@@ -21,7 +21,7 @@ use crate::scene::Scene;
 use crate::setup;
 use guards::Guards;
 use recorder::Recorder;
-use stability::{Critical, Watch};
+use stability::Critical;
 
 /// Runs a scene to its end; `progress` hears the number of every finished step.
 ///
@@ -57,22 +57,19 @@ fn run_in<const D: usize>(
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
     let mut recorder = Recorder::new(scene, &model, &state);
-    let mut watch = Watch::new(scene, &model, &state, limit);
     let mut guards = None;
     let mut march = || -> Result<(), BrokenDown> {
         let start = Moment::START;
         time::start(&mut state, &model, &mut |_, _| {}).map_err(|what| what.at(start))?;
-        let guards = guards.insert(Guards::new(scene, &model, &state));
-        recorder.record(&state, start, guards.work()).map_err(|what| what.at(start))?;
+        let guards = guards.insert(Guards::new(scene, &model, &state, limit));
+        let work = guards.add_work(&state, start);
+        recorder.record(&state, start, work).map_err(|what| what.at(start))?;
         for step in 1..=model.steps {
             let moment = Moment::of(step, model.dt);
             time::advance(&mut state, &model, moment.time, &mut |_, _| {})
-                .and_then(|()| guards.follow(&state, moment))
-                .and_then(|()| recorder.follow(&state, moment, guards.work()))
-                .and_then(|()| match &mut watch {
-                    Some(watch) => watch.follow(&state, moment, &|| guards.balance(&state)),
-                    None => Ok(()),
-                })
+                .map(|()| guards.add_work(&state, moment))
+                .and_then(|work| recorder.follow(&state, moment, work))
+                .and_then(|()| guards.judge(&state, moment))
                 .map_err(|what| what.at(moment))?;
             progress(step);
         }
@@ -83,7 +80,7 @@ fn run_in<const D: usize>(
     }
     let end = Moment::of(model.steps, model.dt);
     let bytes_per_particle = model.bytes_per_particle() as u64;
-    let limit_applications = watch.map_or(0, |watch| watch.applications);
+    let limit_applications = guards.as_ref().map_or(0, Guards::limit_applications);
     Ok(Outcome {
         particles: recorder.particles(&state, end.time),
         frames: recorder.frames,

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 /// This is the largest value of what a guard looked at, with its particle and moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct Worst {
     pub value: f64,
     pub particle: usize,
     pub moment: Moment,
@@ -21,19 +21,19 @@ pub enum Warning {
          particle {} holds the largest share",
         .0.value, .0.moment, .0.particle
     )]
-    EnergyGrew(Seen),
+    EnergyGrew(Worst),
     #[error(
         "particle {} has turned by {:.3} rad, at {}: the rate law does not turn its stress; \
          body.law = \"neo-hookean\" or \"hencky\" does",
         .0.particle, .0.value, .0.moment
     )]
-    Turned(Seen),
+    Turned(Worst),
     #[error(
         "the body is free, and its angular momentum has changed by {:.2e} of what it could be by its \
          speeds, at {}",
         .0.value, .0.moment
     )]
-    AngularMomentum(Seen),
+    AngularMomentum(Worst),
     #[error(
         "Poisson's ratio is {nu}, and from {from} on this basis is too stiff in bending, as it locks: \
          a cantilever of 16 × 4 cells bends less than nine tenths as far as at 0.3"
@@ -53,7 +53,7 @@ impl Warning {
     }
 
     /// Gives what was seen, and when; `None` for what holds from the start on.
-    pub fn seen(&self) -> Option<Seen> {
+    pub fn seen(&self) -> Option<Worst> {
         match self {
             Warning::EnergyGrew(seen) | Warning::Turned(seen) | Warning::AngularMomentum(seen) => {
                 Some(*seen)
@@ -62,6 +62,7 @@ impl Warning {
         }
     }
 
+    // ANCHOR: locking
     /// Warns of a body in 2D or 3D whose material hardly changes its volume, where the basis then
     /// hardly lets it bend. With one particle per cell, which holds the volume of a cell at one
     /// place only, none does that.
@@ -82,4 +83,5 @@ impl Warning {
         let nu = scene.body.poisson_ratio;
         (nu >= from).then_some(Warning::Locking { nu, from })
     }
+    // ANCHOR_END: locking
 }
