@@ -11,13 +11,14 @@ pub mod table;
 pub use open::parse;
 pub use outcome::{Frame, Outcome, Stopped};
 
-use crate::method::breakdown::{BrokenDown, Moment};
+use crate::method::breakdown::{Breakdown, BrokenDown, Moment};
 use crate::method::cost::Cost;
 use crate::method::time;
 use crate::scene::Scene;
 use crate::setup;
 use recorder::Recorder;
 use stability::{Critical, Watch};
+use std::ops::ControlFlow;
 
 /// Runs a scene to its end; `progress` hears the number of every finished step.
 ///
@@ -26,17 +27,21 @@ use stability::{Critical, Watch};
 ///
 /// Errors: [`Stopped`] when the run breaks down.
 pub fn run(scene: &Scene, progress: &mut dyn FnMut(usize)) -> Result<Outcome, Box<Stopped>> {
-    run_knowing(scene, None, progress)
+    let mut on = |step| {
+        progress(step);
+        ControlFlow::Continue(())
+    };
+    run_knowing(scene, None, &mut on)
 }
 
 /// Runs a scene of which the limit of Δt may be known, so that the watch need not predict it
-/// again.
+/// again; `progress` hears the number of every finished step, and says whether to go on.
 ///
-/// Errors: [`Stopped`] when the run breaks down.
+/// Errors: [`Stopped`] when the run breaks down, or `progress` breaks it off.
 pub fn run_knowing(
     scene: &Scene,
     limit: Option<Critical>,
-    progress: &mut dyn FnMut(usize),
+    progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> Result<Outcome, Box<Stopped>> {
     match scene.dimension() {
         1 => run_in::<1>(scene, limit, progress),
@@ -48,7 +53,7 @@ pub fn run_knowing(
 fn run_in<const D: usize>(
     scene: &Scene,
     limit: Option<Critical>,
-    progress: &mut dyn FnMut(usize),
+    progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> Result<Outcome, Box<Stopped>> {
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
@@ -67,7 +72,9 @@ fn run_in<const D: usize>(
                     None => Ok(()),
                 })
                 .map_err(|what| what.at(moment))?;
-            progress(step);
+            if progress(step).is_break() && step < model.steps {
+                return Err(Breakdown::Interrupted.at(moment));
+            }
         }
         Ok(())
     };
