@@ -31,6 +31,7 @@ mod port;
 mod published;
 mod refusals;
 mod regression;
+mod results;
 mod riemann;
 #[path = "bench/rows.rs"]
 mod rows;

@@ -4,9 +4,10 @@ use crate::run;
 use crate::scene::fault::Fault;
 use crate::scene::{Scene, neither, shipped};
 use std::ffi::OsString;
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Reads the text of a file.
 ///
@@ -90,11 +91,13 @@ pub fn write_all(dir: &Path, files: &[(String, Vec<u8>)], stale: &[String]) -> R
 /// Errors: [`Fault::Write`] with the path.
 pub fn write(files: &[(PathBuf, &[u8])]) -> Result<(), Fault> {
     let fresh = |path: &Path| beside(path, ".lme-mpm-new");
-    let _lock = files.first().and_then(|(path, _)| lock(path.parent()?));
+    let lock = files.first().and_then(|(path, _)| lock(path.parent()?));
     let write = || -> Result<(), Fault> {
         for (path, bytes) in files {
             is_file(path)?;
-            remove(fresh(path))?; // a killed command has left it
+            if lock.is_some() {
+                remove(fresh(path))?; // a killed command has left it
+            }
             write_new(&fresh(path), bytes).map_err(unwritten(path))?;
         }
         let rename = |(path, _): &(PathBuf, _)| fs::rename(fresh(path), path);
@@ -129,11 +132,19 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// Waits until no other command writes in `folder`, and keeps others out as long as what it
-/// gives lives; `None` where the system has no such locks. A process that dies gives it back.
+/// gives lives; a process that dies gives it back. `None` where the system has no such locks,
+/// or after ten seconds: then whoever meets what another is making stops, and names it.
 pub fn lock(folder: &Path) -> Option<File> {
     let folder = if folder == Path::new("") { Path::new(".") } else { folder };
     let file = File::open(folder).ok()?;
-    file.lock().ok().map(|()| file)
+    for _ in 0..1000 {
+        match file.try_lock() {
+            Ok(()) => return Some(file),
+            Err(TryLockError::Error(_)) => return None,
+            Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
+        }
+    }
+    None
 }
 
 /// Names what stands hidden beside `path` while it is made: `.NAME` and `ending`.

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// This file in a directory lists what a run has written there.
 pub const MANIFEST: &str = "results.txt";
@@ -49,7 +49,8 @@ pub fn prepare(dir: &Path) -> Result<(), Fault> {
     let mut commit = Commit::at(dir, &mut watcher)?;
     commit.recover()?;
     commit.act(&commit.new.clone(), |new| fs::create_dir(new))?;
-    commit.clear()
+    let moves = commit.moves();
+    commit.clear().and(moves)
 }
 
 /// Lets `files` take the place `dir` of an earlier run's, all or none.
@@ -87,11 +88,15 @@ impl<'a> Commit<'a> {
             Some(here) => here,
             None => fs::canonicalize(dir).map_err(unwritten(dir))?,
         };
-        let folder = match (here.file_name(), here.parent()) {
-            (Some(_), Some(folder)) => folder,
-            _ => return Err(unwritten(dir)(io::Error::other("it cannot be replaced"))),
+        let (Some(name), Some(folder)) = (here.file_name(), here.parent()) else {
+            return Err(unwritten(dir)(io::Error::other("it cannot be replaced")));
         };
         fs::create_dir_all(folder).map_err(unwritten(dir))?;
+        // A way that leads through the place itself would end where it is moved away.
+        let here = match dir.components().any(|part| part == Component::ParentDir) {
+            true => fs::canonicalize(folder).map_err(unwritten(dir))?.join(name),
+            false => here,
+        };
         let is_current = |now| fs::canonicalize(&here).is_ok_and(|at| at == now);
         if fs::canonicalize(".").is_ok_and(is_current) {
             return Err(Fault::Argument {
@@ -101,7 +106,7 @@ impl<'a> Commit<'a> {
             });
         }
         let [new, old] = [".lme-mpm-new", ".lme-mpm-old"].map(|ending| beside(&here, ending));
-        Ok(Commit { lock: lock(folder), here, new, old, watcher })
+        Ok(Commit { lock: lock(here.parent().unwrap_or(Path::new(""))), here, new, old, watcher })
     }
 
     /// Does one operation on a file, which the watcher hears of.
@@ -136,6 +141,17 @@ impl<'a> Commit<'a> {
         Ok(())
     }
 
+    /// Moves the old results away and back: what cannot be moved, such as a mount, is refused
+    /// before the run.
+    fn moves(&mut self) -> Result<(), Fault> {
+        let (here, old) = (self.here.clone(), self.old.clone());
+        if !is_there(&here) {
+            return Ok(());
+        }
+        self.rename(&here, &old)?;
+        self.rename(&old, &here)
+    }
+
     /// Writes the fresh directory, first the list of what it will hold.
     fn fill(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), Fault> {
         let lines = files.iter().map(|(name, bytes)| format!("{} {name}\n", bytes.len()));
@@ -154,6 +170,8 @@ impl<'a> Commit<'a> {
         let (here, new, old) = (self.here.clone(), self.new.clone(), self.old.clone());
         let replaces = is_there(&here);
         if replaces {
+            let rights = fs::metadata(&here).map_err(unwritten(&here))?.permissions();
+            self.act(&new, |new| fs::set_permissions(new, rights))?;
             self.rename(&here, &old)?;
         }
         // What came into the old directory at the last moment came before it was renamed.
