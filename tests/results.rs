@@ -217,9 +217,9 @@ fn results_that_are_foreign_in_the_end_are_refused() {
         let mut count = 0;
         let mut watcher = |path: &Path| {
             count += 1;
-            // The last one is renamed aside when this is heard of.
+            // At the last one it is about to be renamed aside.
             if count == at {
-                assert!(at < 6 || path.ends_with(".o.lme-mpm-old"), "{path:?}");
+                assert!(at < 6 || path.ends_with("foreign-in-the-end/o"), "{path:?}");
                 fs::write(dir.join("mine"), "mine").unwrap();
             }
             Ok(())

@@ -11,11 +11,12 @@
 
 use super::files::{beside, lock, unwritten, write_new};
 use crate::scene::fault::Fault;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// This file in a directory lists what a run has written there.
 pub const MANIFEST: &str = "results.txt";
@@ -29,13 +30,16 @@ pub type Watcher<'a> = &'a mut dyn FnMut(&Path) -> io::Result<()>;
 
 /// A commit brings results to their place.
 struct Commit<'a> {
+    /// As the user has it.
+    dir: &'a Path,
+    /// The same with all links followed.
     here: PathBuf,
     /// All of it may be removed at any time.
     new: PathBuf,
     /// It is whole as long as it has this name.
     old: PathBuf,
-    watcher: Watcher<'a>,
-    /// No other commit is at work beside the place; `None` where the file system has no locks.
+    watcher: RefCell<Watcher<'a>>,
+    /// No other commit is at work beside the place; `None` where the system has no locks.
     lock: Option<File>,
 }
 
@@ -46,10 +50,14 @@ struct Commit<'a> {
 /// [`Fault::Argument`] for the current directory; [`Fault::Write`] with the path.
 pub fn prepare(dir: &Path) -> Result<(), Fault> {
     let mut watcher = |_: &Path| Ok(());
-    let mut commit = Commit::at(dir, &mut watcher)?;
-    commit.recover()?;
-    commit.act(&commit.new.clone(), |new| fs::create_dir(new))?;
-    let moves = commit.moves();
+    let commit = Commit::begin(dir, &mut watcher)?;
+    // What cannot be moved, such as a mount, is refused now and not after the run.
+    let moves = match is_there(&commit.here) {
+        true => commit
+            .rename(&commit.here, &commit.old)
+            .and_then(|()| commit.rename(&commit.old, &commit.here)),
+        false => Ok(()),
+    };
     commit.clear().and(moves)
 }
 
@@ -69,9 +77,7 @@ pub fn commit_watched(
     files: &[(String, Vec<u8>)],
     watcher: Watcher<'_>,
 ) -> Result<(), Fault> {
-    let mut commit = Commit::at(dir, watcher)?;
-    commit.recover()?;
-    commit.act(&commit.new.clone(), |new| fs::create_dir(new))?;
+    let commit = Commit::begin(dir, watcher)?;
     commit.fill(files).and_then(|()| commit.take()).inspect_err(|_| {
         // Best effort: the error that matters is the one that led here.
         commit.clear().ok();
@@ -79,26 +85,11 @@ pub fn commit_watched(
 }
 
 impl<'a> Commit<'a> {
-    /// Finds the place, where a link leads to for one that is a link, and locks its folder.
-    fn at(dir: &Path, watcher: Watcher<'a>) -> Result<Self, Fault> {
-        // Without a slash at its end, which would follow a link.
-        let here = dir.file_name().map(|name| dir.with_file_name(name));
-        let is_link = |path: &PathBuf| fs::symlink_metadata(path).is_ok_and(|at| at.is_symlink());
-        let here = match here.filter(|here| !is_link(here)) {
-            Some(here) => here,
-            None => fs::canonicalize(dir).map_err(unwritten(dir))?,
-        };
-        let (Some(name), Some(folder)) = (here.file_name(), here.parent()) else {
-            return Err(unwritten(dir)(io::Error::other("it cannot be replaced")));
-        };
-        fs::create_dir_all(folder).map_err(unwritten(dir))?;
-        // A way that leads through the place itself would end where it is moved away.
-        let here = match dir.components().any(|part| part == Component::ParentDir) {
-            true => fs::canonicalize(folder).map_err(unwritten(dir))?.join(name),
-            false => here,
-        };
-        let is_current = |now| fs::canonicalize(&here).is_ok_and(|at| at == now);
-        if fs::canonicalize(".").is_ok_and(is_current) {
+    /// Locks the folder of the place, clears away what a killed run has left, refuses what is
+    /// not ours, and makes the fresh directory.
+    fn begin(dir: &'a Path, watcher: Watcher<'a>) -> Result<Self, Fault> {
+        let here = resolved(dir).map_err(unwritten(dir))?;
+        if fs::canonicalize(".").is_ok_and(|now| now == here) {
             return Err(Fault::Argument {
                 argument: "--out",
                 problem: format!("`{}` is the current directory", dir.display()),
@@ -106,107 +97,101 @@ impl<'a> Commit<'a> {
             });
         }
         let [new, old] = [".lme-mpm-new", ".lme-mpm-old"].map(|ending| beside(&here, ending));
-        Ok(Commit { lock: lock(here.parent().unwrap_or(Path::new(""))), here, new, old, watcher })
+        let lock = here.parent().and_then(lock);
+        let commit = Commit { dir, here, new, old, watcher: RefCell::new(watcher), lock };
+        commit.recover()?;
+        commit.act(&commit.new, |new| fs::create_dir(new))?;
+        Ok(commit)
     }
 
     /// Does one operation on a file, which the watcher hears of.
     fn act(
-        &mut self,
+        &self,
         path: &Path,
         operation: impl FnOnce(&Path) -> io::Result<()>,
     ) -> Result<(), Fault> {
-        (self.watcher)(path).and_then(|()| operation(path)).map_err(unwritten(path))
+        let heard = (self.watcher.borrow_mut())(path);
+        heard.and_then(|()| operation(path)).map_err(unwritten(path))
     }
 
-    fn rename(&mut self, from: &Path, to: &Path) -> Result<(), Fault> {
-        self.act(to, |to| fs::rename(from, to))
+    fn rename(&self, from: &Path, to: &Path) -> Result<(), Fault> {
+        self.act(from, |from| fs::rename(from, to))
     }
 
     /// Clears away what a killed run has left, and refuses what is not ours.
-    fn recover(&mut self) -> Result<(), Fault> {
-        let (here, new, old) = (self.here.clone(), self.new.clone(), self.old.clone());
+    fn recover(&self) -> Result<(), Fault> {
         if self.lock.is_some() {
             // Without a lock another run may be at work there: it is refused, by its name.
             self.clear()?;
         }
-        let aside = is_directory(&old);
-        if aside && (!is_there(&here) || fs::remove_dir(&here).is_ok()) {
-            self.rename(&old, &here)?;
+        let aside = is_directory(&self.old);
+        if aside && (!is_there(&self.here) || fs::remove_dir(&self.here).is_ok()) {
+            self.rename(&self.old, &self.here)?;
         }
-        check(&here, &here)?;
-        if is_directory(&old) {
-            self.rename(&old, &new)?;
+        check(&self.here, self.dir)?;
+        if is_directory(&self.old) {
+            self.rename(&self.old, &self.new)?;
             self.clear()?;
         }
         Ok(())
-    }
-
-    /// Moves the old results away and back: what cannot be moved, such as a mount, is refused
-    /// before the run.
-    fn moves(&mut self) -> Result<(), Fault> {
-        let (here, old) = (self.here.clone(), self.old.clone());
-        if !is_there(&here) {
-            return Ok(());
-        }
-        self.rename(&here, &old)?;
-        self.rename(&old, &here)
     }
 
     /// Writes the fresh directory, first the list of what it will hold.
-    fn fill(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), Fault> {
+    fn fill(&self, files: &[(String, Vec<u8>)]) -> Result<(), Fault> {
         let lines = files.iter().map(|(name, bytes)| format!("{} {name}\n", bytes.len()));
         let list = format!("{HEAD}\n{}", lines.collect::<String>());
-        let path = self.new.join(MANIFEST);
-        self.act(&path, |path| write_new(path, list.as_bytes()))?;
-        for (name, bytes) in files {
-            let path = self.new.join(name);
-            self.act(&path, |path| write_new(path, bytes))?;
-        }
-        Ok(())
+        self.act(&self.new.join(MANIFEST), |path| write_new(path, list.as_bytes()))?;
+        files.iter().try_for_each(|(name, bytes)| {
+            self.act(&self.new.join(name), |path| write_new(path, bytes))
+        })
     }
 
     /// Lets the fresh directory take the place.
-    fn take(&mut self) -> Result<(), Fault> {
-        let (here, new, old) = (self.here.clone(), self.new.clone(), self.old.clone());
-        let replaces = is_there(&here);
-        if replaces {
-            let rights = fs::metadata(&here).map_err(unwritten(&here))?.permissions();
-            self.act(&new, |new| fs::set_permissions(new, rights))?;
-            self.rename(&here, &old)?;
+    fn take(&self) -> Result<(), Fault> {
+        if !is_there(&self.here) {
+            return self.rename(&self.new, &self.here);
         }
+        let rights = fs::metadata(&self.here).map_err(unwritten(self.dir))?.permissions();
+        self.act(&self.new, |new| fs::set_permissions(new, rights))?;
+        self.rename(&self.here, &self.old)?;
         // What came into the old directory at the last moment came before it was renamed.
-        let taken = check(&old, &here).and_then(|()| self.rename(&new, &here));
-        if replaces && taken.is_err() {
-            // If this fails, too, the next run does it.
-            self.rename(&old, &here).ok();
-        }
-        taken?;
-        if replaces {
-            self.rename(&old, &new)?;
-            self.clear()?;
-        }
-        Ok(())
+        check(&self.old, self.dir).and_then(|()| self.rename(&self.new, &self.here)).inspect_err(
+            |_| {
+                // If this fails, too, the next run does it.
+                self.rename(&self.old, &self.here).ok();
+            },
+        )?;
+        self.rename(&self.old, &self.new)?;
+        self.clear()
     }
 
     /// Removes the directory of which nothing is needed. Its list goes last, so that half of it
     /// is still known as ours.
-    fn clear(&mut self) -> Result<(), Fault> {
-        let new = self.new.clone();
-        if !is_directory(&new) {
+    fn clear(&self) -> Result<(), Fault> {
+        if !is_directory(&self.new) {
             return Ok(());
         }
-        let names = names(&new)?;
-        if !names.is_empty() && !names.contains(&MANIFEST.into()) {
-            return Err(foreign(&new, &names[0]));
+        let mut names = names(&self.new)?;
+        if let Some(first) = names.first().filter(|_| !names.contains(&MANIFEST.into())) {
+            return Err(foreign(&self.new, first));
         }
-        for name in names.iter().filter(|name| *name != MANIFEST) {
-            self.act(&new.join(name), |path| fs::remove_file(path))?;
+        names.sort_by_key(|name| name == MANIFEST);
+        for name in names {
+            self.act(&self.new.join(name), |path| fs::remove_file(path))?;
         }
-        if !names.is_empty() {
-            self.act(&new.join(MANIFEST), |path| fs::remove_file(path))?;
-        }
-        self.act(&new, |new| fs::remove_dir(new))
+        self.act(&self.new, |new| fs::remove_dir(new))
     }
+}
+
+/// Follows all links to the place, and makes the folder of one that is not there yet.
+fn resolved(dir: &Path) -> io::Result<PathBuf> {
+    if let Ok(here) = fs::canonicalize(dir) {
+        return Ok(here);
+    }
+    let name = dir.file_name().ok_or(io::ErrorKind::NotFound)?;
+    let folder = dir.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder)?;
+    Ok(fs::canonicalize(folder)?.join(name))
 }
 
 fn is_there(path: &Path) -> bool {
