@@ -31,6 +31,7 @@ mod port;
 mod published;
 mod refusals;
 mod regression;
+#[cfg(unix)] // pipes, links, signals, names that are bytes
 mod results;
 mod riemann;
 #[path = "bench/rows.rs"]

@@ -339,7 +339,7 @@ fn results_of_a_run_that_is_broken_off() {
 fn results_of_an_interrupted_run() {
     let root = directory("interrupted");
     let long = ["run", DYKA, "--out", "out/o", "--set", "grid.cells=20000", "--set", "probe=[]"];
-    let child = Command::new(env!("CARGO_BIN_EXE_lme-mpm"))
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lme-mpm"))
         .args(long)
         .current_dir(&root)
         .stdout(Stdio::piped())
@@ -348,6 +348,7 @@ fn results_of_an_interrupted_run() {
         .unwrap();
     // The folder is made right before the run.
     while !root.join("out").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before it began");
         std::thread::sleep(Duration::from_millis(10));
     }
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
