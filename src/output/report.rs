@@ -97,7 +97,7 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Fault {
     let history = stopped.history.csv();
     let left = match history.and_then(|csv| commit(dir, &[(FAILED.to_string(), csv)])) {
         Ok(()) => format!("the history up to there is in {}", dir.join(FAILED).display()),
-        Err(fault) => format!("the history up to there is lost: {fault}"),
+        Err(fault) => format!("the history up to there may be lost: {fault}"),
     };
     let courant = scene.courant_number();
     let hint = match stopped.broken.breakdown {
