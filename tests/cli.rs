@@ -18,6 +18,7 @@ fn alone_runs_the_bar() {
         "cost.csv",
         "history.csv",
         "particles.csv",
+        "results.txt",
         "stress_three_quarter.svg",
         "summary.csv",
         "velocity_end.svg",
@@ -194,6 +195,7 @@ fn run_replaces_an_earlier_run() {
         "cost.csv",
         "history.csv",
         "particles.csv",
+        "results.txt",
         "stress_three_quarter.svg",
         "summary.csv",
         "tip.svg",
@@ -203,7 +205,7 @@ fn run_replaces_an_earlier_run() {
     assert_eq!(files(&dir.join("o")), expected, "refused before anything was written");
     let grow = ["--set", "time.cfl=2", "--set", "probe=[]", "--set", "time.allow_unstable=true"];
     assert_eq!(run(&grow).status.code(), Some(1));
-    assert_eq!(files(&dir.join("o")), ["history.failed.csv"]);
+    assert_eq!(files(&dir.join("o")), ["history.failed.csv", "results.txt"]);
 }
 
 /// 2D writes its picture and, asked for it, the series for ParaView, which a reader

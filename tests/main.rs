@@ -33,6 +33,8 @@ mod port;
 mod published;
 mod refusals;
 mod regression;
+#[cfg(unix)] // pipes, links, signals, names that are bytes
+mod results;
 mod riemann;
 #[path = "bench/rows.rs"]
 mod rows;

@@ -182,7 +182,7 @@ fn output_that_cannot_be_written() {
     assert_fails(&output, 2, &["cannot write standard output"]);
     fs::create_dir_all(dir.join("taken/summary.csv")).unwrap();
     let output = program(&dir, &["run", DYKA, "--out", "taken"]);
-    assert_fails(&output, 2, &["cannot write taken/summary.csv"]);
+    assert_fails(&output, 2, &["cannot replace taken", "summary.csv"]);
     assert_eq!(files(&dir.join("taken")), ["summary.csv"]);
 }
 
@@ -328,7 +328,7 @@ fn singular_mass_is_named() {
     let sets: Vec<&str> = sets.split(' ').flat_map(|set| ["--set", set]).collect();
     let output = program(&dir, &[&["run", DYKA, "--out", "out"][..], &sets].concat());
     assert_fails(&output, 1, &["singular", "step 0", "40 particles", "41 nodes", "lumped"]);
-    assert_eq!(files(&dir.join("out")), ["history.failed.csv"]);
+    assert_eq!(files(&dir.join("out")), ["history.failed.csv", "results.txt"]);
 }
 
 /// A time step above the predicted limit is refused before anything is written, and
@@ -415,7 +415,7 @@ fn breakdown_blows_up() {
     let words =
         ["at step ", "t = ", "check.energy", "particle ", "Courant number", "smaller time.cfl"];
     assert_fails(&output, 1, &words);
-    assert_eq!(files(&dir.join("o")), ["history.failed.csv"]);
+    assert_eq!(files(&dir.join("o")), ["history.failed.csv", "results.txt"]);
     let history = fs::read_to_string(dir.join("o/history.failed.csv")).unwrap();
     assert!(history.starts_with("step,t,") && history.lines().count() > 2);
     assert!(!history.contains("NaN") && !history.contains("inf"));
@@ -436,7 +436,7 @@ fn breakdown_beyond_the_limit() {
     let output = program(&dir, &[&["run", FLIGHT, "--out", "o"][..], &sets].concat());
     let words = ["at step ", "t = ", "particle ", "beyond its limit", "time.fraction_of_critical"];
     assert_fails(&output, 1, &words);
-    assert_eq!(files(&dir.join("o")), ["history.failed.csv"]);
+    assert_eq!(files(&dir.join("o")), ["history.failed.csv", "results.txt"]);
     let off = ["--set", "time.watch=0"];
     let output = program(&dir, &[&["run", FLIGHT, "--out", "o"][..], &sets, &off].concat());
     assert_fails(&output, 1, &["check.energy"]);
@@ -519,8 +519,10 @@ fn bad_traces() {
 fn inputs_are_not_overwritten() {
     let dir = directory("inputs");
     for (name, arguments) in [
-        ("history.csv", &["run", "history.csv", "--quiet", "--out", "."][..]),
-        ("recommended.toml", &["recommend", "recommended.toml", "--error", "30%", "--out", "."]),
+        (
+            "recommended.toml",
+            &["recommend", "recommended.toml", "--error", "30%", "--out", "."][..],
+        ),
         ("trade.csv", &["trade", "--merge", "trade.csv", "--out", "."]),
     ] {
         fs::copy(DYKA, dir.join(name)).unwrap();
@@ -528,7 +530,13 @@ fn inputs_are_not_overwritten() {
         assert_fails(&output, 2, &["would overwrite the input", name, "allowed: another folder"]);
         assert_eq!(fs::read(dir.join(name)).unwrap(), fs::read(DYKA).unwrap());
     }
-    assert_eq!(files(&dir), ["history.csv", "recommended.toml", "trade.csv"]);
+    // A run replaces a whole directory, and a scene in it is none of its results.
+    fs::create_dir(dir.join("mine")).unwrap();
+    fs::copy(DYKA, dir.join("mine/history.csv")).unwrap();
+    let output = program(&dir, &["run", "mine/history.csv", "--quiet", "--out", "mine"]);
+    assert_fails(&output, 2, &["cannot replace mine", "history.csv"]);
+    assert_eq!(fs::read(dir.join("mine/history.csv")).unwrap(), fs::read(DYKA).unwrap());
+    assert_eq!(files(&dir), ["mine", "recommended.toml", "trade.csv"]);
 }
 
 /// Logs that are merged must be whole: no run, a line cut short, a number that is none are

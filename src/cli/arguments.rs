@@ -26,7 +26,10 @@ pub enum Command {
     /// Run a scene and compare it with its exact solution
     ///
     /// Writes history.csv, particles.csv, summary.csv, cost.csv and one SVG
-    /// for each probe. A run that breaks down leaves history.failed.csv only.
+    /// for each probe, and results.txt, which lists them. They replace a directory
+    /// that is empty or holds nothing but what its results.txt lists. A run that
+    /// breaks down leaves history.failed.csv only, with exit code 1; so does Ctrl-C,
+    /// with exit code 130.
     #[command(
         after_help = "Example:\n  lme-mpm run dyka --set grid.cells=160 --set time.cfl=0.9 --out out/fine"
     )]

@@ -21,8 +21,10 @@ use lme_mpm::scene::schema::schema;
 use lme_mpm::scene::{DYKA, SHIPPED, Scene, declare, shipped};
 use lme_mpm::study::ranking::Question;
 use std::io::Write;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 use terminal::{open, print_bytes};
 
 const BOLD: anstyle::Style = anstyle::Style::new().bold();
@@ -34,7 +36,7 @@ pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         None => built_in(),
         Some(Command::Run { scene, out, set, quiet, strict }) => files::scene(&scene, &set)
-            .and_then(|read| run(&read, Some(&scene), out, quiet))
+            .and_then(|read| run(&read, out, quiet))
             .and_then(|warnings| warn(&warnings, strict)),
         Some(Command::Scenes { ask }) => scenes(ask),
         Some(Command::Completions { shell }) => completions(shell),
@@ -74,7 +76,7 @@ pub fn main() -> ExitCode {
 
 fn built_in() -> Result<(), Fault> {
     let scene = lme_mpm::run::parse("dyka", "dyka.toml (built in)", DYKA, &[])?;
-    warn(&run(&scene, None, None, false)?, false)
+    warn(&run(&scene, None, false)?, false)
 }
 
 /// Says what a run is warned of; with `strict` that is an error.
@@ -90,17 +92,9 @@ fn warn(warnings: &[Warning], strict: bool) -> Result<(), Fault> {
 }
 
 /// Runs a scene, writes its results, and gives what they are warned of.
-fn run(
-    scene: &Scene,
-    path: Option<&Path>,
-    out: Option<PathBuf>,
-    quiet: bool,
-) -> Result<Vec<Warning>, Fault> {
+fn run(scene: &Scene, out: Option<PathBuf>, quiet: bool) -> Result<Vec<Warning>, Fault> {
     let dir = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
-    if let Some(path) = path {
-        let endings = [".csv", ".svg", ".vtu", ".pvd"];
-        files::spare(path, &dir, |name| endings.iter().any(|ending| name.ends_with(ending)))?;
-    }
+    let interrupted = terminal::interrupted()?;
     let steps = scene.sizes().2 as u64;
     let bar = ProgressBar::with_draw_target(
         Some(steps),
@@ -119,6 +113,10 @@ fn run(
         }
         if (step as u64).is_multiple_of(tell) {
             bar.set_position(step as u64);
+        }
+        match interrupted.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
         }
     });
     bar.finish_and_clear();
@@ -232,38 +230,39 @@ fn trace(
     let scene = files::scene(path, sets)?;
     lme_mpm::port::trace::affordable(&scene, steps)?;
     report::stable(&scene)?;
-    let place = match out {
-        Some(out) if out != Path::new("-") => Some(place_beside(path, out)?),
-        _ => None,
-    };
+    let place = out.filter(|out| *out != Path::new("-"));
+    if let Some(out) = place {
+        writable(path, out)?;
+        // If this trace fails, an earlier one must not pass for it.
+        files::remove(out.to_path_buf())?;
+    }
     let entries = lme_mpm::port::trace::trace(&scene, steps)
         .map_err(|broken| Fault::Run { broken, advice: "nothing was written".to_string() })?;
     let text = lme_mpm::port::trace::csv(&entries, hex)?;
     match place {
         None => print_bytes(&text),
-        Some((folder, name)) => files::write_all(&folder, &[(name, text)], &[]),
+        Some(out) => files::write(&[(out.to_path_buf(), &text)]),
     }
 }
 
-/// Gives the folder, made if need be, and the name of a file to write, which is not the
-/// `input`.
-fn place_beside(input: &Path, out: &Path) -> Result<(PathBuf, String), Fault> {
+/// Refuses to write at `out` what is to be no directory and not the `input`, and makes its
+/// folder if need be.
+fn writable(input: &Path, out: &Path) -> Result<(), Fault> {
     let refuse = |problem: &str| Fault::Argument {
         argument: "--out",
         problem: format!("`{}` is {problem}", out.display()),
         allowed: "a file to write, or - for standard output",
     };
-    let folder = out.parent().filter(|p| *p != Path::new("")).unwrap_or(Path::new("."));
-    let Some(name) = out.file_name().filter(|_| !out.is_dir()) else {
+    if out.file_name().is_none() || out.is_dir() {
         return Err(refuse("a directory"));
-    };
+    }
     if let (Ok(input), Ok(out)) = (input.canonicalize(), out.canonicalize())
         && input == out
     {
         return Err(refuse("the scene itself"));
     }
-    files::prepare(folder)?;
-    Ok((folder.to_path_buf(), name.to_string_lossy().into_owned()))
+    files::is_file(out)?;
+    files::prepare(out.parent().filter(|p| *p != Path::new("")).unwrap_or(Path::new(".")))
 }
 
 fn compare(reference: &Path, theirs: &Path, tolerance: Tolerance, part: bool) -> Result<(), Fault> {

@@ -1,8 +1,10 @@
-//! Standard input is read and standard output written here.
+//! Standard input is read, standard output written, and Ctrl-C heard here.
 
 use lme_mpm::scene::fault::Fault;
 use std::io::{Read, Write};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Opens a file, or standard input for `-`.
 pub fn open(path: &Path) -> Result<Box<dyn Read>, Fault> {
@@ -24,4 +26,15 @@ pub fn print_bytes(bytes: &[u8]) -> Result<(), Fault> {
         }
         _ => Ok(()),
     }
+}
+
+/// Gives a flag that the first Ctrl-C sets; the second ends the program at once, with 130.
+pub fn interrupted() -> Result<Arc<AtomicBool>, Fault> {
+    use signal_hook::{consts::SIGINT, flag};
+    let set = Arc::new(AtomicBool::new(false));
+    // What is registered first is done first: the first Ctrl-C finds the flag not set.
+    flag::register_conditional_shutdown(SIGINT, 130, set.clone())
+        .and_then(|_| flag::register(SIGINT, set.clone()))
+        .map_err(|source| Fault::Read { path: "the signal of Ctrl-C".into(), source })?;
+    Ok(set)
 }

@@ -88,6 +88,9 @@ pub enum Breakdown {
         shown(*part)
     )]
     Gained { particle: usize, share: f64, part: f64 },
+    /// No step has failed: whoever listens to the run wants no more of it.
+    #[error("the run was interrupted")]
+    Interrupted,
 }
 
 /// Writes a fraction with three digits, rounded down.

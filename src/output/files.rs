@@ -3,9 +3,11 @@
 use crate::run;
 use crate::scene::fault::Fault;
 use crate::scene::{Scene, neither, shipped};
-use std::fs;
-use std::io::ErrorKind;
-use std::path::Path;
+use std::ffi::OsString;
+use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Reads the text of a file.
 ///
@@ -60,53 +62,112 @@ pub fn spare(input: &Path, dir: &Path, taken: impl Fn(&str) -> bool) -> Result<(
     })
 }
 
-/// Writes all `files` into `dir`, each complete or not at all, and removes the
-/// `stale` ones of an earlier run, so that a directory does not mix two runs.
+/// Tells whether a file stands at `path`. A directory, a pipe, a device or a link is none: who
+/// opens or replaces it waits for ever, or writes elsewhere.
+///
+/// Errors: [`Fault::Write`] for what is there and not a regular file.
+pub fn is_file(path: &Path) -> Result<bool, Fault> {
+    match fs::symlink_metadata(path) {
+        Ok(there) if !there.is_file() => {
+            Err(unwritten(path)(io::Error::other("it is not a regular file")))
+        }
+        there => Ok(there.is_ok()),
+    }
+}
+
+/// Writes all `files` into `dir`, each complete or not at all, and removes the `stale` ones of
+/// an earlier question.
 ///
 /// Errors: [`Fault::Write`] with the path.
 pub fn write_all(dir: &Path, files: &[(String, Vec<u8>)], stale: &[String]) -> Result<(), Fault> {
-    let fault = |path: &Path, source| Fault::Write { path: path.to_path_buf(), source };
-    for (name, _) in files {
-        // What is not a file of its own (a device, a pipe, a link) would be replaced by one.
-        let path = dir.join(name);
-        if fs::symlink_metadata(&path).is_ok_and(|there| !there.is_file()) {
-            return Err(fault(&path, std::io::Error::other("it is not a regular file")));
-        }
-    }
-    let temporary = |name: &str| dir.join(format!(".{name}.{}.part", std::process::id()));
-    let write = || -> Result<(), Fault> {
-        for (name, bytes) in files {
-            let path = temporary(name);
-            fs::write(&path, bytes).map_err(|source| fault(&path, source))?;
-        }
-        for (name, _) in files {
-            let path = dir.join(name);
-            fs::rename(temporary(name), &path).map_err(|source| fault(&path, source))?;
-        }
-        Ok(())
-    };
-    write().inspect_err(|_| {
-        for (name, _) in files {
-            // Best effort: the error that matters is the one that led here.
-            fs::remove_file(temporary(name)).ok();
-        }
-    })?;
-    for name in stale.iter().filter(|name| !files.iter().any(|(written, _)| written == *name)) {
-        let path = dir.join(name);
-        if path.exists() {
-            fs::remove_file(&path).map_err(|source| fault(&path, source))?;
-        }
-    }
-    Ok(())
+    let files: Vec<_> = files.iter().map(|(name, bytes)| (dir.join(name), &bytes[..])).collect();
+    write(&files)?;
+    let stale = stale.iter().map(|name| dir.join(name));
+    stale.filter(|path| files.iter().all(|(written, _)| written != path)).try_for_each(remove)
 }
 
-/// Makes `dir` and tries to write there, before a run spends time.
+/// Writes files of one folder, each complete or not at all.
+///
+/// Errors: [`Fault::Write`] with the path.
+pub fn write(files: &[(PathBuf, &[u8])]) -> Result<(), Fault> {
+    let fresh = |path: &Path| beside(path, ".lme-mpm-new");
+    let lock = files.first().and_then(|(path, _)| lock(path.parent()?));
+    let write = || -> Result<(), Fault> {
+        for (path, bytes) in files {
+            is_file(path)?;
+            if lock.is_some() {
+                remove(fresh(path))?; // a killed command has left it
+            }
+            write_new(&fresh(path), bytes).map_err(unwritten(path))?;
+        }
+        let rename = |(path, _): &(PathBuf, _)| fs::rename(fresh(path), path);
+        files.iter().try_for_each(|file| rename(file).map_err(unwritten(&file.0)))
+    };
+    write().inspect_err(|_| {
+        for (path, _) in files {
+            // Best effort: the error that matters is the one that led here.
+            remove(fresh(path)).ok();
+        }
+    })
+}
+
+/// Removes a file if it is there.
+///
+/// Errors: [`Fault::Write`] for what is not a regular file, or stays.
+pub fn remove(path: PathBuf) -> Result<(), Fault> {
+    match is_file(&path)? {
+        true => fs::remove_file(&path).map_err(unwritten(&path)),
+        false => Ok(()),
+    }
+}
+
+/// Writes a file that is not there yet: no link is followed. What the disk refuses late, it
+/// refuses here.
+///
+/// Errors: what the system says.
+pub fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create_new(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+/// Waits until no other command writes in `folder`, and keeps others out as long as what it
+/// gives lives; a process that dies gives it back. `None` where the system has no such locks,
+/// or after ten seconds: then whoever meets what another is making stops, and names it.
+pub fn lock(folder: &Path) -> Option<File> {
+    let folder = if folder == Path::new("") { Path::new(".") } else { folder };
+    let file = File::open(folder).ok()?;
+    for _ in 0..1000 {
+        match file.try_lock() {
+            Ok(()) => return Some(file),
+            Err(TryLockError::Error(_)) => return None,
+            Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
+        }
+    }
+    None
+}
+
+/// Names what stands hidden beside `path` while it is made: `.NAME` and `ending`.
+pub fn beside(path: &Path, ending: &str) -> PathBuf {
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(ending);
+    path.with_file_name(name)
+}
+
+/// Makes the fault of a path that could not be written.
+pub fn unwritten(path: &Path) -> impl Fn(io::Error) -> Fault {
+    move |source| Fault::Write { path: path.to_path_buf(), source }
+}
+
+/// Makes `dir` and tries to write there, before a command spends time.
 ///
 /// Errors: [`Fault::Write`] with the path.
 pub fn prepare(dir: &Path) -> Result<(), Fault> {
-    let fault = |source| Fault::Write { path: dir.to_path_buf(), source };
-    fs::create_dir_all(dir).map_err(fault)?;
-    let probe = dir.join(format!(".writable.{}.part", std::process::id()));
-    fs::write(&probe, []).map_err(fault)?;
-    fs::remove_file(&probe).map_err(fault)
+    fs::create_dir_all(dir).map_err(unwritten(dir))?;
+    let _lock = lock(dir);
+    let probe = dir.join(".lme-mpm-new");
+    remove(probe.clone())?;
+    write_new(&probe, &[]).map_err(unwritten(dir))?;
+    remove(probe)
 }

@@ -6,6 +6,8 @@ pub mod figure;
 pub mod files;
 #[cfg(feature = "program")]
 pub mod report;
+#[cfg(feature = "program")]
+pub mod results;
 pub mod summary;
 #[cfg(feature = "program")]
 pub mod vtk;

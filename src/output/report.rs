@@ -1,7 +1,7 @@
 //! Runs a scene and writes what came out of it: histories, last state,
 //! summary, cost and pictures.
 
-use super::files::{prepare, write_all};
+use super::results::{commit, prepare};
 use super::summary::{self, SummaryLine};
 use super::{figure, vtk};
 use crate::method::breakdown::Breakdown;
@@ -11,6 +11,7 @@ use crate::run::table::{csv, shortest};
 use crate::run::{Stopped, Warning, run_knowing};
 use crate::scene::Scene;
 use crate::scene::fault::Fault;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
@@ -23,12 +24,6 @@ const FAILED: &str = "history.failed.csv";
 
 /// The particles at the end are drawn here, in 2D and 3D.
 const PICTURE: &str = "particles.svg";
-
-/// The list of frames for ParaView stands here.
-const SERIES: &str = "particles.pvd";
-
-/// Every complete run leaves these files, besides one SVG for each probe.
-const FILES: [&str; 4] = ["history.csv", "particles.csv", "summary.csv", "cost.csv"];
 
 /// Gives the predicted limit of Δt; `None` where it cannot be predicted, and the scene
 /// breaks down by its own name.
@@ -55,22 +50,23 @@ pub fn stable(scene: &Scene) -> Result<Option<Critical>, Fault> {
 /// A complete run leaves `history.csv`, `particles.csv`, `summary.csv`,
 /// `cost.csv` and `<probe>.svg`, in 2D and 3D also `particles.svg` and, if asked
 /// for, the series for ParaView; one that breaks down leaves only
-/// `history.failed.csv`. Either way the other kind of an earlier run goes.
+/// `history.failed.csv`, and so does one that `progress` breaks off. Either way they take the
+/// place of an earlier run's, see [`results`](super::results).
 ///
-/// Errors: [`Fault::Unstable`] for a Δt above the predicted limit, before anything
-/// is written; [`Fault::Write`]; [`Fault::Run`] when the run breaks down.
+/// Errors: [`Fault::Unstable`] for a Δt above the predicted limit and [`Fault::Foreign`] for
+/// what is not ours in `dir`, before anything is written; [`Fault::Write`]; [`Fault::Run`]
+/// when the run breaks down.
 pub fn run_into(
     dir: &Path,
     scene: &Scene,
-    progress: &mut dyn FnMut(usize),
+    progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> Result<(Vec<SummaryLine>, Vec<Warning>), Fault> {
     let limit = stable(scene)?;
     prepare(dir)?;
-    free_names(dir, scene)?;
     let start = Instant::now();
     let outcome = match run_knowing(scene, limit, progress) {
         Ok(outcome) => outcome,
-        Err(stopped) => return Err(broken(dir, scene, *stopped)?),
+        Err(stopped) => return Err(broken(dir, scene, *stopped)),
     };
     let mut lines = summary::lines(scene, &outcome, start.elapsed().as_secs_f64());
     if let Some(limit) = limit {
@@ -78,10 +74,10 @@ pub fn run_into(
     }
     let cost = summary::cost_lines(&outcome.cost);
     let mut files = vec![
-        (FILES[0].to_string(), outcome.history.csv()?),
-        (FILES[1].to_string(), outcome.particles.csv()?),
-        (FILES[2].to_string(), lines_csv(&lines)?),
-        (FILES[3].to_string(), lines_csv(&cost)?),
+        ("history.csv".to_string(), outcome.history.csv()?),
+        ("particles.csv".to_string(), outcome.particles.csv()?),
+        ("summary.csv".to_string(), lines_csv(&lines)?),
+        ("cost.csv".to_string(), lines_csv(&cost)?),
     ];
     for probe in &scene.probes {
         let picture = figure::probe(scene, probe, &outcome.history);
@@ -92,22 +88,25 @@ pub fn run_into(
         files.push((PICTURE.to_string(), picture.into_bytes()));
     }
     files.extend(vtk::files(&outcome.frames)?);
-    let mut stale = earlier(dir);
-    stale.push(FAILED.to_string());
-    write_all(dir, &files, &stale)?;
+    commit(dir, &files)?;
     lines.extend(cost);
     Ok((lines, outcome.warnings))
 }
 
 /// Leaves the history up to the breakdown, and names what to try.
-fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
-    write_all(dir, &[(FAILED.to_string(), stopped.history.csv()?)], &earlier(dir))?;
+fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Fault {
+    let history = stopped.history.csv();
+    let left = match history.and_then(|csv| commit(dir, &[(FAILED.to_string(), csv)])) {
+        Ok(()) => format!("the history up to there is in {}", dir.join(FAILED).display()),
+        Err(fault) => format!("the history up to there may be lost: {fault}"),
+    };
     let courant = scene.courant_number();
     let hint = match stopped.broken.breakdown {
         Breakdown::ReachesBeyond { .. }
         | Breakdown::NoBasis { .. }
         | Breakdown::SingularMass { .. }
-        | Breakdown::NoMass { .. } => String::new(),
+        | Breakdown::NoMass { .. }
+        | Breakdown::Interrupted => String::new(),
         Breakdown::BeyondLimit { .. } | Breakdown::Gained { .. } => {
             "give the time step as a part of the limit with \
              time.fraction_of_critical, or a smaller time.cfl; "
@@ -120,44 +119,7 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
         ),
         _ => format!("the Courant number c Δt / h is {courant:.3}: try a smaller time.cfl; "),
     };
-    let left = dir.join(FAILED);
-    Ok(Fault::Run {
-        broken: stopped.broken,
-        advice: format!("{hint}the history up to there is in {}", left.display()),
-    })
-}
-
-/// Refuses, before the run, a directory that stands where a file is to be.
-fn free_names(dir: &Path, scene: &Scene) -> Result<(), Fault> {
-    let mut names: Vec<String> = FILES.map(String::from).to_vec();
-    names.push(FAILED.to_string());
-    names.extend(scene.probes.iter().map(|probe| format!("{}.svg", probe.name)));
-    names.extend([PICTURE, SERIES].map(String::from).into_iter().filter(|_| scene.dimension() > 1));
-    let rows = scene.sizes().2 as usize / scene.every + 2;
-    names.extend((0..rows).filter(|_| scene.vtk).map(vtk::name));
-    for name in names {
-        let path = dir.join(name);
-        if path.is_dir() {
-            let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
-            return Err(Fault::Write { path, source });
-        }
-    }
-    Ok(())
-}
-
-/// Lists the files that an earlier complete run has left in `dir`: those of every
-/// run, and a picture for each column of its history.
-fn earlier(dir: &Path) -> Vec<String> {
-    let mut files: Vec<String> = FILES.map(String::from).to_vec();
-    let history = std::fs::read_to_string(dir.join(FILES[0])).unwrap_or_default();
-    let columns = history.lines().next().unwrap_or("").split(',');
-    let plain = |name: &&str| name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    files.extend(columns.filter(plain).map(|name| format!("{name}.svg")));
-    files.extend([PICTURE, SERIES].map(String::from));
-    let names = std::fs::read_dir(dir).into_iter().flatten().flatten();
-    let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
-    files.extend(names.filter(|name| vtk::is_frame(name)));
-    files
+    Fault::Run { broken: stopped.broken, advice: format!("{hint}{left}") }
 }
 
 /// Writes `quantity,value,unit`.

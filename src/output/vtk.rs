@@ -15,12 +15,6 @@ pub fn name(n: usize) -> String {
     format!("particles_{n:06}.vtu")
 }
 
-/// Tells whether this is the name of a frame, of any run.
-pub fn is_frame(name: &str) -> bool {
-    let number = name.strip_prefix("particles_").and_then(|rest| rest.strip_suffix(".vtu"));
-    number.is_some_and(|n| !n.is_empty() && n.chars().all(|c| c.is_ascii_digit()))
-}
-
 /// Writes all files of the series.
 ///
 /// Errors: [`Fault::Write`].

@@ -14,7 +14,7 @@ pub use open::parse;
 pub use outcome::{Frame, Outcome, Stopped};
 pub use warning::{Warning, Worst};
 
-use crate::method::breakdown::{BrokenDown, Moment};
+use crate::method::breakdown::{Breakdown, BrokenDown, Moment};
 use crate::method::cost::Cost;
 use crate::method::time;
 use crate::scene::Scene;
@@ -22,6 +22,7 @@ use crate::setup;
 use guards::Guards;
 use recorder::Recorder;
 use stability::Critical;
+use std::ops::ControlFlow;
 
 /// Runs a scene to its end; `progress` hears the number of every finished step.
 ///
@@ -30,17 +31,21 @@ use stability::Critical;
 ///
 /// Errors: [`Stopped`] when the run breaks down.
 pub fn run(scene: &Scene, progress: &mut dyn FnMut(usize)) -> Result<Outcome, Box<Stopped>> {
-    run_knowing(scene, None, progress)
+    let mut on = |step| {
+        progress(step);
+        ControlFlow::Continue(())
+    };
+    run_knowing(scene, None, &mut on)
 }
 
 /// Runs a scene of which the limit of Δt may be known, so that the watch need not predict it
-/// again.
+/// again; `progress` hears the number of every finished step, and says whether to go on.
 ///
-/// Errors: [`Stopped`] when the run breaks down.
+/// Errors: [`Stopped`] when the run breaks down, or `progress` breaks it off.
 pub fn run_knowing(
     scene: &Scene,
     limit: Option<Critical>,
-    progress: &mut dyn FnMut(usize),
+    progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> Result<Outcome, Box<Stopped>> {
     match scene.dimension() {
         1 => run_in::<1>(scene, limit, progress),
@@ -52,7 +57,7 @@ pub fn run_knowing(
 fn run_in<const D: usize>(
     scene: &Scene,
     limit: Option<Critical>,
-    progress: &mut dyn FnMut(usize),
+    progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
 ) -> Result<Outcome, Box<Stopped>> {
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
@@ -71,7 +76,9 @@ fn run_in<const D: usize>(
                 .and_then(|work| recorder.follow(&state, moment, work))
                 .and_then(|()| guards.judge(&state, moment))
                 .map_err(|what| what.at(moment))?;
-            progress(step);
+            if progress(step).is_break() && step < model.steps {
+                return Err(Breakdown::Interrupted.at(moment));
+            }
         }
         Ok(())
     };

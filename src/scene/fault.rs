@@ -1,11 +1,12 @@
 //! Everything that can go wrong has a name here.
 //!
-//! There are two families with two exit codes. Input that cannot be used ([`SceneError`],
+//! There are two families with an exit code each. Input that cannot be used ([`SceneError`],
 //! [`Fault::Read`], …) ends with 2 before anything is written. A run that breaks down
-//! ([`BrokenDown`]) ends with 1 and leaves its history under a name that says so; a port
-//! whose trace differs ([`Fault::Differs`]) ends with 1, too.
+//! ([`BrokenDown`]) ends with 1 and leaves its history under a name that says so; one that is
+//! interrupted does the same and ends with 130; a port whose trace differs
+//! ([`Fault::Differs`]) ends with 1, too.
 
-use crate::method::breakdown::BrokenDown;
+use crate::method::breakdown::{Breakdown, BrokenDown};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -74,6 +75,11 @@ pub enum Fault {
     NoScene { path: PathBuf, source: std::io::Error, shipped: String, suggestion: Option<String> },
     #[error("cannot write {path}: {source}")]
     Write { path: PathBuf, source: std::io::Error },
+    #[error(
+        "cannot replace {dir}: its {file} is not listed, as it stands there, in a {list} of \
+         lme-mpm (earlier versions wrote no list); choose another --out, or move away what is there"
+    )]
+    Foreign { dir: PathBuf, file: PathBuf, list: &'static str },
     #[error("{path}, line {line}: {problem}; allowed: {allowed}")]
     Points { path: String, line: u64, problem: String, allowed: String },
     #[error("{argument}: {problem}; allowed: {allowed}")]
@@ -114,10 +120,12 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Gives the exit code: 1 for a run that broke down or is warned of where that is an error, or a port that differs, 2 for input or
-    /// output that cannot be used.
+    /// Gives the exit code: 1 for a run that broke down, or is warned of where that is an error,
+    /// and for a port that differs; 130 for a run that was interrupted, as shells have it; 2 for
+    /// input or output that cannot be used.
     pub fn exit_code(&self) -> u8 {
         match self {
+            Fault::Run { broken, .. } if broken.breakdown == Breakdown::Interrupted => 130,
             Fault::Run { .. } | Fault::Differs(_) | Fault::Warned(_) => 1,
             _ => 2,
         }

@@ -5,6 +5,7 @@ use super::configuration::{Configuration, Template};
 use super::measured::Measured;
 use super::pool;
 use super::rows::is_whole;
+use crate::output::files;
 use crate::run::table::{csv, shortest};
 use crate::scene::fault::Fault;
 use std::collections::BTreeSet;
@@ -198,14 +199,12 @@ pub fn complete(
 ) -> Result<Vec<TimedRun>, Fault> {
     let scene = template.digest()?;
     let fault = |source| Fault::Write { path: path.to_path_buf(), source };
-    let mut known = match path.exists() {
+    let mut known = match files::is_file(path)? {
         true => read(path, &scene)?,
         false => Vec::new(),
     };
     // The log is written anew, so that a line cut short does not stay.
-    let new = path.with_extension("csv.part");
-    let bytes = csv_of(&scene, &known)?;
-    fs::write(&new, bytes).and_then(|()| fs::rename(&new, path)).map_err(fault)?;
+    files::write(&[(path.to_path_buf(), &csv_of(&scene, &known)?)])?;
     let mut log = fs::OpenOptions::new().append(true).open(path).map_err(fault)?;
     let is_known = |pass: usize, configuration: &Configuration| {
         known.iter().any(|run| run.pass == pass && run.configuration == *configuration)
