@@ -57,7 +57,8 @@ pub fn stable(scene: &Scene) -> Result<Option<Critical>, Fault> {
 /// `history.failed.csv`. Either way the other kind of an earlier run goes.
 ///
 /// Errors: [`Fault::Unstable`] for a Δt above the predicted limit, before anything
-/// is written; [`Fault::Write`]; [`Fault::Run`] when the run breaks down.
+/// is written; [`Fault::Write`]; [`Fault::Run`] when the run breaks down;
+/// [`Fault::NotFinite`] for results that are no numbers, of which nothing is written.
 pub fn run_into(
     dir: &Path,
     scene: &Scene,
@@ -98,9 +99,16 @@ pub fn run_into(
     Ok(lines)
 }
 
-/// Leaves the history up to the breakdown, and names what to try.
+/// Leaves the history up to the breakdown, if its numbers are finite, and names what to try.
 fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
-    write_all(dir, &[(FAILED.to_string(), stopped.history.csv()?)], &earlier(dir))?;
+    let (history, left) = match stopped.history.csv() {
+        Ok(bytes) => {
+            let left = format!("the history up to there is in {}", dir.join(FAILED).display());
+            (vec![(FAILED.to_string(), bytes)], left)
+        }
+        Err(fault) => (Vec::new(), format!("no history is left: {fault}")),
+    };
+    write_all(dir, &history, &earlier(dir))?;
     let courant = scene.courant_number();
     let hint = match stopped.broken.breakdown {
         Breakdown::ReachesBeyond { .. }
@@ -119,11 +127,7 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
         ),
         _ => format!("the Courant number c Δt / h is {courant:.3}: try a smaller time.cfl; "),
     };
-    let left = dir.join(FAILED);
-    Ok(Fault::Run {
-        broken: stopped.broken,
-        advice: format!("{hint}the history up to there is in {}", left.display()),
-    })
+    Ok(Fault::Run { broken: stopped.broken, advice: format!("{hint}{left}") })
 }
 
 /// Refuses, before the run, a directory that stands where a file is to be.

@@ -108,15 +108,19 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<SummaryLin
 }
 
 /// Gives the predicted limit of Δt, and the part of it that `dt` (s) is: of the limit over all
-/// offsets where particles move, and else of that at the start.
+/// offsets where particles move, and else of that at the start. A body that nothing strains has
+/// no limit, and no such line.
 pub fn limit_lines(limit: &Critical, dt: f64) -> Vec<SummaryLine> {
-    let finite = |limit: f64| limit.min(f64::MAX);
-    let mut lines = vec![SummaryLine::new("critical_time_step", finite(limit.start), "s")];
-    if let Some(least) = limit.over_offsets {
-        lines.push(SummaryLine::new("critical_time_step_over_offsets", finite(least), "s"));
-    }
-    lines.push(SummaryLine::new("fraction_of_critical", dt / finite(limit.used()), "1"));
-    lines
+    let over_offsets = limit.over_offsets.unwrap_or(f64::INFINITY);
+    [
+        ("critical_time_step", limit.start, limit.start, "s"),
+        ("critical_time_step_over_offsets", over_offsets, over_offsets, "s"),
+        ("fraction_of_critical", limit.used(), dt / limit.used(), "1"),
+    ]
+    .into_iter()
+    .filter(|(_, limit, ..)| limit.is_finite())
+    .map(|(name, _, value, unit)| SummaryLine::new(name, value, unit))
+    .collect()
 }
 
 /// Finds the largest size in a list.

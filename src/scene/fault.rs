@@ -3,7 +3,8 @@
 //! There are two families with two exit codes. Input that cannot be used ([`SceneError`],
 //! [`Fault::Read`], …) ends with 2 before anything is written. A run that breaks down
 //! ([`BrokenDown`]) ends with 1 and leaves its history under a name that says so; a port
-//! whose trace differs ([`Fault::Differs`]) ends with 1, too.
+//! whose trace differs ([`Fault::Differs`]) ends with 1, too, and so do results that are no finite
+//! numbers ([`Fault::NotFinite`]).
 
 use crate::method::breakdown::BrokenDown;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -34,11 +35,12 @@ impl SceneError {
     /// Draws the offending line with the error below it.
     pub fn render(&self, renderer: &Renderer) -> String {
         let title = match self.key.as_str() {
-            "" => self.problem.clone(),
-            key => format!("{key}: {}", self.problem),
+            "" => visible(&self.problem, &['\n']),
+            key => visible(&format!("{key}: {}", self.problem), &[]),
         };
+        let path = visible(&self.path, &[]);
         let snippet = Snippet::source(&self.text)
-            .path(&self.path)
+            .path(&path)
             .annotation(AnnotationKind::Primary.span(self.span.clone()));
         let mut group: Group<'_> = Level::ERROR.primary_title(title).element(snippet);
         if !self.allowed.is_empty() {
@@ -101,6 +103,8 @@ pub enum Fault {
          compares what both have"
     )]
     Alone { place: String, problem: String },
+    #[error("{quantity} is {value}, which is no finite number and is not written")]
+    NotFinite { quantity: String, value: String },
     #[error("{0}")]
     Differs(String),
     #[error("{broken}\n{advice}")]
@@ -116,10 +120,27 @@ impl Fault {
     /// output that cannot be used.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Fault::Run { .. } | Fault::Differs(_) => 1,
+            Fault::Run { .. } | Fault::Differs(_) | Fault::NotFinite { .. } => 1,
             _ => 2,
         }
     }
+}
+
+/// Tells whether a terminal may obey this character (a control character, or one that turns the
+/// direction of writing), or no SVG may hold it (U+FFFE and U+FFFF).
+pub fn unprintable(c: char) -> bool {
+    let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    c.is_control() || turns || matches!(c, '\u{fffe}' | '\u{ffff}')
+}
+
+/// Writes what is unprintable in a text as `\u{1b}`, `\n` and so on, but for the characters that
+/// are `kept`.
+pub fn visible(text: &str, kept: &[char]) -> String {
+    let plain = |c: char| match unprintable(c) && !kept.contains(&c) {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    };
+    text.chars().map(plain).collect()
 }
 
 impl From<Box<SceneError>> for Fault {

@@ -3,6 +3,7 @@
 
 use super::configuration::{Configuration, KEYS, Template};
 use super::pool;
+use super::rows::size;
 use crate::method::breakdown::Breakdown;
 use crate::run::stability;
 use crate::run::table::{csv, shortest};
@@ -154,7 +155,7 @@ impl Mapped {
         let combination = all.iter().find(|one| one.name() == name)?.clone();
         let limit = match *problem {
             "" => {
-                Ok(Limit { predicted: predicted.parse().ok()?, measured: measured.parse().ok()? })
+                Ok(Limit { predicted: size(predicted)?, measured: size(measured)? })
             }
             problem => Err(problem.to_string()),
         };
