@@ -27,6 +27,7 @@ pub enum Command {
     ///
     /// Writes history.csv, particles.csv, summary.csv, cost.csv and one SVG
     /// for each probe. A run that breaks down leaves history.failed.csv only.
+    /// Shows eight figures of the summary, on a terminal also the first probe.
     #[command(
         after_help = "Example:\n  lme-mpm run dyka --set grid.cells=160 --set time.cfl=0.9 --out out/fine"
     )]
@@ -40,8 +41,11 @@ pub enum Command {
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
         /// No progress bar and no summary
-        #[arg(long, short)]
+        #[arg(long, short, conflicts_with = "all")]
         quiet: bool,
+        /// Show the whole summary, not the eight figures that matter most
+        #[arg(long)]
+        all: bool,
     },
     /// List the shipped scenes, print one to start from, or the schema of scenes
     #[command(

@@ -12,28 +12,42 @@ use comfy_table::{CellAlignment, Table, presets};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lme_mpm::method::basis::{Basis, Support};
 use lme_mpm::output::summary::SummaryLine;
-use lme_mpm::output::{files, report};
+use lme_mpm::output::{figure, files, report};
 use lme_mpm::port::check::{self, Tolerance};
 use lme_mpm::port::points::{self, Points};
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
 use lme_mpm::scene::{DYKA, SHIPPED, Scene, declare, shipped};
 use lme_mpm::study::ranking::Question;
-use std::io::Write;
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use terminal::{open, print_bytes};
+use terminal::{open, print_bytes, print_report};
 
 const BOLD: anstyle::Style = anstyle::Style::new().bold();
-const RED: anstyle::Style =
-    anstyle::Style::new().bold().fg_color(Some(anstyle::Color::Ansi(anstyle::AnsiColor::Red)));
-
 /// Does the command that was typed, and tells what went wrong.
 pub fn main() -> ExitCode {
-    let done = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return ExitCode::from(terminal::tell_usage(&error)),
+    };
+    match dispatch(arguments.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fault) => {
+            terminal::tell(&fault);
+            ExitCode::from(fault.exit_code())
+        }
+    }
+}
+
+fn dispatch(command: Option<Command>) -> Result<(), Fault> {
+    match command {
         None => built_in(),
-        Some(Command::Run { scene, out, set, quiet }) => {
-            files::scene(&scene, &set).and_then(|read| run(&read, Some(&scene), out, quiet))
+        Some(Command::Run { scene, out, set, quiet, all }) => {
+            let show = [Show::Chief, Show::All, Show::Nothing];
+            let show = show[if quiet { 2 } else { usize::from(all) }];
+            let read = files::scene(&scene, &set)?;
+            run(&read, Some(&scene), out, show).map_err(|fault| placed(fault, &read, &scene, &set))
         }
         Some(Command::Scenes { ask }) => scenes(ask),
         Some(Command::Completions { shell }) => completions(shell),
@@ -56,27 +70,23 @@ pub fn main() -> ExitCode {
         Some(Command::Stability { rows, scene, out, jobs }) => {
             studies::stability(&rows, scene.as_deref(), &out, jobs)
         }
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(fault) => {
-            let message = match &fault {
-                Fault::Scene(error) => error.render(&annotate_snippets::Renderer::styled()),
-                _ => format!("{RED}error{RED:#}: {fault}"),
-            };
-            // If even this cannot be said, the exit code says it.
-            writeln!(anstream::stderr(), "{message}").ok();
-            ExitCode::from(fault.exit_code())
-        }
     }
+}
+
+/// What a run shows of itself.
+#[derive(Clone, Copy, PartialEq)]
+enum Show {
+    Chief,
+    All,
+    Nothing,
 }
 
 fn built_in() -> Result<(), Fault> {
     let scene = lme_mpm::run::parse("dyka", "dyka.toml (built in)", DYKA, &[])?;
-    run(&scene, None, None, false)
+    run(&scene, None, None, Show::Chief)
 }
 
-fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, quiet: bool) -> Result<(), Fault> {
+fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, show: Show) -> Result<(), Fault> {
     let dir = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
     if let Some(path) = path {
         let endings = [".csv", ".svg", ".vtu", ".pvd"];
@@ -85,7 +95,11 @@ fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, quiet: bool) ->
     let steps = scene.sizes().2 as u64;
     let bar = ProgressBar::with_draw_target(
         Some(steps),
-        if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() },
+        if show == Show::Nothing {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr()
+        },
     );
     let template =
         |text: &str| ProgressStyle::with_template(text).unwrap_or(ProgressStyle::default_bar());
@@ -103,21 +117,65 @@ fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, quiet: bool) ->
         }
     });
     bar.finish_and_clear();
-    let lines = lines?;
-    if !quiet {
-        let text = format!(
-            "{BOLD}{}{BOLD:#}\n{}\nwritten to {}\n",
-            scene.title,
-            table(&lines),
-            dir.display()
-        );
-        print_bytes(text.as_bytes())?;
+    let (lines, history) = lines?;
+    if show == Show::Nothing {
+        return Ok(());
     }
-    Ok(())
+    let plot = match scene.probes.first().filter(|_| std::io::stdout().is_terminal()) {
+        Some(probe) => figure::in_terminal(scene, probe, &history),
+        None => String::new(),
+    };
+    let chief: Vec<&SummaryLine> = match show {
+        Show::All => lines.iter().collect(),
+        _ => chief(scene, &lines),
+    };
+    let own = format!("{BOLD}{}{BOLD:#}\n{plot}{}\n", scene.title, table(&chief));
+    print_report(&own, "", &dir)
+}
+
+/// Puts a time step that is too large where it was written: file, line and key.
+fn placed(fault: Fault, scene: &Scene, path: &Path, sets: &[String]) -> Fault {
+    let (Fault::Unstable { .. }, Ok(text)) = (&fault, files::scene_text(path)) else {
+        return fault;
+    };
+    let Ok(declared) = declare(&scene.name, &path.display().to_string(), &text, sets) else {
+        return fault;
+    };
+    let key = match scene.time.cfl < declared.scene.time.cfl {
+        true => "time.fraction_of_critical",
+        false => "time.cfl",
+    };
+    let message = fault.to_string();
+    let (problem, remedy) = message.split_once("; set ").unwrap_or((&message, ""));
+    let mut error = declared.error(key, problem);
+    error.allowed = remedy.to_string();
+    Fault::Scene(error)
+}
+
+/// Picks the figures that matter, at most eight: the first probe's error, or its peak where no
+/// exact solution is known, the errors of all particles at the end, the energy, the part of the
+/// limit that the time step is, and what the run took.
+fn chief<'a>(scene: &Scene, lines: &'a [SummaryLine]) -> Vec<&'a SummaryLine> {
+    let of_probe = scene.probes.first().and_then(|probe| {
+        let names = ["rms_relative", "peak"].map(|what| format!("{}_{what}", probe.name));
+        names.iter().find_map(|name| lines.iter().find(|line| line.quantity == *name))
+    });
+    let names = [
+        "velocity_field_rms_relative",
+        "stress_field_rms_relative",
+        "displacement_field_rms_relative",
+        "energy_drift_largest",
+        "energy_balance_largest",
+        "fraction_of_critical",
+        "particle_node_pairs",
+        "wall_time",
+    ];
+    let rest = lines.iter().filter(|line| names.contains(&line.quantity.as_str()));
+    of_probe.into_iter().chain(rest).collect()
 }
 
 /// Lays out the summary as a table for the terminal.
-fn table(lines: &[SummaryLine]) -> Table {
+fn table(lines: &[&SummaryLine]) -> Table {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_header(["quantity", "value", "unit"]);
     for line in lines {
@@ -212,7 +270,7 @@ fn trace(
 ) -> Result<(), Fault> {
     let scene = files::scene(path, sets)?;
     lme_mpm::port::trace::affordable(&scene, steps)?;
-    report::stable(&scene)?;
+    report::stable(&scene).map_err(|fault| placed(fault, &scene, path, sets))?;
     let place = match out {
         Some(out) if out != Path::new("-") => Some(place_beside(path, out)?),
         _ => None,

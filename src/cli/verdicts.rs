@@ -2,7 +2,7 @@
 
 use super::arguments::TradeArguments;
 use super::studies::{comparable, list_rows, progress, template};
-use super::terminal::print_bytes;
+use super::terminal::{print_bytes, print_report, quoted};
 use lme_mpm::output::figure;
 use lme_mpm::output::files::{self, prepare, write_all};
 use lme_mpm::run::table::shortest;
@@ -39,7 +39,7 @@ pub fn trade(arguments: &TradeArguments) -> Result<(), Fault> {
         }
     };
     write(dir, &rows)?;
-    print_bytes(report(dir, &rows).as_bytes())
+    print_report("", &report(&rows), dir)
 }
 
 /// Runs one configuration and prints its part of the log.
@@ -135,7 +135,7 @@ fn standing(rows: &[Tried], (among, price): (Among, Price), question: Question) 
 }
 
 /// Tells the terminal the verdicts of a trade by level, and what failed.
-fn report(dir: &Path, rows: &[Tried]) -> String {
+fn report(rows: &[Tried]) -> String {
     let mut text = format!("The cheapest of {} configurations by error:\n", rows.len());
     for criterion in Criterion::ALL {
         for error in LEVELS {
@@ -146,7 +146,7 @@ fn report(dir: &Path, rows: &[Tried]) -> String {
             }
         }
     }
-    text + &failed(rows) + &format!("\nwritten to {}\n", dir.display())
+    text + &failed(rows) + "\n"
 }
 
 /// Names the configurations that failed, each with its reason.
@@ -197,18 +197,14 @@ pub fn recommend(
     let quantity = criterion.name();
     if candidates.is_empty() {
         let best = ranking::best(&rows, Among::Particles, criterion);
-        let best = best.map_or(f64::INFINITY, |(_, error)| error);
+        let best = best.map(|(_, error)| error);
         return Err(Fault::NothingReaches { quantity, error, best });
     }
     let text = told(&rows, &candidates, question);
     let (asked, left) = (shortest(error * 100.0), trades::left_out(&template.scene));
     let counted = format!("{} configurations measured, {dearer} dearer ones not", rows.len());
-    print_bytes(
-        format!(
-            "For a {quantity} error of at most {asked}%:\n{HEAD}{text}\n{counted}; {left}.\n{ready}"
-        )
-        .as_bytes(),
-    )
+    let head = format!("For a {quantity} error of at most {asked}%:\n{HEAD}");
+    print_report("", &format!("{head}{text}\n{counted}; {left}.\n{ready}"), &dir)
 }
 
 /// Writes the neighbours and the scenes that were chosen, removes those of an earlier question,
@@ -223,7 +219,8 @@ fn write_chosen(
     let mut ready = String::new();
     for (file, candidate) in chosen(candidates, question) {
         let text = scene_file(template, candidate, question)?;
-        ready += &format!("ready to run: lme-mpm run {}\n", dir.join(file).display());
+        let path = quoted(&dir.join(file).display().to_string());
+        ready += &format!("ready to run: lme-mpm run {path}\n");
         files.push((file.to_string(), text.into_bytes()));
     }
     write_all(dir, &files, &FILES.map(String::from))?;

@@ -7,7 +7,7 @@ use super::{figure, vtk};
 use crate::method::breakdown::Breakdown;
 use crate::method::choice::Mass;
 use crate::run::stability::{self, Critical};
-use crate::run::table::{csv, shortest};
+use crate::run::table::{Table, csv, shortest};
 use crate::run::{Stopped, run_knowing};
 use crate::scene::Scene;
 use crate::scene::fault::Fault;
@@ -49,7 +49,7 @@ pub fn stable(scene: &Scene) -> Result<Option<Critical>, Fault> {
     })
 }
 
-/// Runs `scene` and writes its results into `dir`; returns the summary.
+/// Runs `scene` and writes its results into `dir`; returns the summary and the history.
 ///
 /// A complete run leaves `history.csv`, `particles.csv`, `summary.csv`,
 /// `cost.csv` and `<probe>.svg`, in 2D and 3D also `particles.svg` and, if asked
@@ -63,7 +63,7 @@ pub fn run_into(
     dir: &Path,
     scene: &Scene,
     progress: &mut dyn FnMut(usize),
-) -> Result<Vec<SummaryLine>, Fault> {
+) -> Result<(Vec<SummaryLine>, Table), Fault> {
     let limit = stable(scene)?;
     prepare(dir)?;
     free_names(dir, scene)?;
@@ -96,7 +96,7 @@ pub fn run_into(
     stale.push(FAILED.to_string());
     write_all(dir, &files, &stale)?;
     lines.extend(cost);
-    Ok(lines)
+    Ok((lines, outcome.history))
 }
 
 /// Leaves the history up to the breakdown, if its numbers are finite, and names what to try.

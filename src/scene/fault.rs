@@ -76,6 +76,12 @@ pub enum Fault {
     NoScene { path: PathBuf, source: std::io::Error, shipped: String, suggestion: Option<String> },
     #[error("cannot write {path}: {source}")]
     Write { path: PathBuf, source: std::io::Error },
+    #[error("cannot write standard output: {source}; {left}")]
+    Output {
+        source: std::io::Error,
+        /// What is written all the same.
+        left: String,
+    },
     #[error("{path}, line {line}: {problem}; allowed: {allowed}")]
     Points { path: String, line: u64, problem: String, allowed: String },
     #[error("{argument}: {problem}; allowed: {allowed}")]
@@ -93,9 +99,10 @@ pub enum Fault {
     )]
     Unstable { courant: f64, largest: f64, singular: bool },
     #[error(
-        "no configuration measured reaches a {quantity} error of {error}: the best has {best:.2e}"
+        "no configuration measured reaches a {quantity} error of {error}: {}",
+        best.map_or("none came to its end".to_string(), |best| format!("the best has {best:.2e}"))
     )]
-    NothingReaches { quantity: &'static str, error: f64, best: f64 },
+    NothingReaches { quantity: &'static str, error: f64, best: Option<f64> },
     #[error("no exact solution is known for this scene: {why}")]
     NoExact { why: &'static str },
     #[error(

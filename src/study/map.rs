@@ -154,9 +154,7 @@ impl Mapped {
         let name = row_name(keys.iter().copied(), offset);
         let combination = all.iter().find(|one| one.name() == name)?.clone();
         let limit = match *problem {
-            "" => {
-                Ok(Limit { predicted: size(predicted)?, measured: size(measured)? })
-            }
+            "" => Ok(Limit { predicted: size(predicted)?, measured: size(measured)? }),
             problem => Err(problem.to_string()),
         };
         Some((name, Mapped { combination, limit }))

@@ -311,9 +311,7 @@ pub fn table(rows: &[Ascent]) -> Result<Vec<u8>, Fault> {
 pub fn read(cells: &[&str]) -> Option<(String, Ascent)> {
     let [name, sizes, v, sigma, u, .., problem] = cells else { return None };
     let ladder = ladders().into_iter().find(|ladder| ladder.name() == *name)?;
-    let list = |text: &str| -> Option<Vec<f64>> {
-        text.split(' ').map(size).collect()
-    };
+    let list = |text: &str| -> Option<Vec<f64>> { text.split(' ').map(size).collect() };
     let climbed = match *problem {
         "" => {
             let (sizes, v, sigma, u) = (list(sizes)?, list(v)?, list(sigma)?, list(u)?);
