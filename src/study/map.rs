@@ -103,6 +103,9 @@ fn limit(
     }
     let measured =
         stability::measured(&scene, *offset, predicted, STEPS, TOLERANCE).map_err(words)?;
+    if !measured.is_finite() {
+        return Err("no step up to a thousand times the predicted limit grows".to_string());
+    }
     let [predicted, measured] = [predicted, measured].map(|dt| scene.courant_number_of(dt));
     Ok(Limit { predicted, measured })
 }
