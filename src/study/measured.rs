@@ -58,7 +58,7 @@ impl Measured {
         };
         match measured.places().iter().all(|(_, x)| x.is_finite()) {
             true => Ok(measured),
-            false => Err("no exact solution to compare with".to_string()),
+            false => Err("nothing moves this body, or its errors are not finite".to_string()),
         }
     }
 
