@@ -2,10 +2,13 @@
 //! gate, and so does every log that is read back.
 
 use crate::support::program::*;
+use crate::support::{TRACTION, VIBRATION, finished, scene};
+use lme_mpm::output::summary::Scales;
 use lme_mpm::output::{summary, vtk};
 use lme_mpm::run::Frame;
 use lme_mpm::run::stability::Critical;
 use lme_mpm::run::table::{Table, csv};
+use lme_mpm::scene::DYKA as DYKA_SCENE;
 use lme_mpm::scene::fault::Fault;
 use std::fs;
 use std::path::Path;
@@ -208,4 +211,36 @@ fn sizes_do_not_overflow() {
         refuse("dyka", &[format!("basis.kind={basis}"), gamma, beyond]);
     }
     assert_eq!(files(&dir), [""; 0]);
+}
+
+/// Errors are relative to what acts: a throw or a mode, and loads beside it; no load leaves a
+/// body without scales, and what nothing moves has none.
+#[test]
+fn summary_scales_by_what_acts() {
+    let of = |text: &str, more: &str| Scales::of(&scene(&format!("{text}\n{more}"), &[]));
+    let gravity = "[body_force]\nacceleration = 1000\n";
+    let (thrown, loaded) = (of(DYKA_SCENE, ""), of(DYKA_SCENE, gravity));
+    // b L/c of the bar is small beside its throw of 5 m/s, and the stress Z b L/c beside Z v/2.
+    let c = (200e9_f64 / 7833.0).sqrt();
+    let pulled = 1000.0 * 0.1333 / c;
+    assert!((loaded.velocity - thrown.velocity - pulled).abs() < 1e-12);
+    assert!(((loaded.stress - thrown.stress) / (7833.0 * c * pulled) - 1.0).abs() < 1e-9);
+    let transit = pulled * 0.1333 / c;
+    assert!(((loaded.displacement - thrown.displacement) / transit - 1.0).abs() < 1e-9);
+    // Alone, loads give every scale; a traction by t/Z.
+    let alone = of(TRACTION, "");
+    assert!(alone.velocity > 0.0 && alone.stress > 0.0 && alone.displacement > 0.0);
+    let (mode, pulled) = (of(VIBRATION, ""), of(VIBRATION, gravity));
+    assert!(pulled.velocity > mode.velocity && pulled.stress > mode.stress);
+    let still = DYKA_SCENE.replace("velocity = 5", "velocity = 0");
+    assert_eq!(of(&still, ""), Scales { velocity: 0.0, stress: 0.0, displacement: 0.0 });
+    let summary = |text: &str| {
+        let scene = scene(text, &[]);
+        summary::lines(&scene, &finished(&scene), 0.0)
+    };
+    let relative = |lines: &[summary::SummaryLine]| {
+        lines.iter().filter(|line| line.quantity.ends_with("_relative")).count()
+    };
+    let loaded = summary(&format!("{still}\n{gravity}"));
+    assert_eq!((relative(&summary(&still)), relative(&loaded)), (0, 5));
 }

@@ -358,15 +358,15 @@ fn trade_front_and_cheapest() {
     let asked =
         |among, price, error| cheapest(&rows, among, price, Question { criterion: judged, error });
     for (level, n, error) in [(0.4, 1, 0.3), (0.3, 1, 0.3), (0.2, 0, 0.1), (0.05, 4, 0.01)] {
-        assert_eq!(asked(Among::Particles, Price::Time, level), Some((&rows[n], error)));
+        assert_eq!(asked(Among::Particles, Price::Work, level), Some((&rows[n], error)));
     }
     // The fourth has the fewest pairs; finite elements and OTM are asked by themselves.
     assert_eq!(asked(Among::Particles, Price::Pairs, 0.2), Some((&rows[3], 0.1)));
-    assert_eq!(asked(Among::FiniteElements, Price::Time, 1e-3), Some((&rows[6], 1e-6)));
-    assert_eq!(asked(Among::Otm, Price::Time, 0.2), Some((&rows[7], 0.1)));
-    assert_eq!(asked(Among::Mpm, Price::Time, 0.2), Some((&rows[4], 0.01)));
+    assert_eq!(asked(Among::FiniteElements, Price::Work, 1e-3), Some((&rows[6], 1e-6)));
+    assert_eq!(asked(Among::Otm, Price::Work, 0.2), Some((&rows[7], 0.1)));
+    assert_eq!(asked(Among::Mpm, Price::Work, 0.2), Some((&rows[4], 0.01)));
     for among in [Among::Particles, Among::Mpm, Among::Otm] {
-        assert_eq!(asked(among, Price::Time, 1e-3), None);
+        assert_eq!(asked(among, Price::Work, 1e-3), None);
     }
     assert_eq!(ranking::best(&rows, Among::Particles, judged), Some((&rows[4], 0.01)));
     let table = String::from_utf8(ranking::cheapest_table(&rows).unwrap()).unwrap();

@@ -87,35 +87,42 @@ fn write(dir: &Path, rows: &[Tried]) -> Result<(), Fault> {
         let efforts: Vec<figure::Effort> = rows
             .iter()
             .map(|row| figure::Effort {
-                work: row.wall_time.median,
+                work: row.work().unwrap_or_default(),
                 error: row.error(criterion),
                 group: row.configuration.family(),
             })
+            .filter(|effort| effort.error.is_some())
             .collect();
         let front = ranking::front(rows, criterion);
-        let front = front.iter().map(|(row, error)| (row.wall_time.median, *error)).collect();
+        let front = front.iter().filter_map(|(row, error)| Some((row.work()?, *error))).collect();
         let title = format!("Work and precision: {name}");
-        let picture = figure::work_precision(&title, "time of a run [s]", &efforts, &front);
+        let picture = figure::work_precision(
+            &title,
+            "counted work of a run [instructions]",
+            &efforts,
+            &front,
+        );
         files.push((format!("{name}.svg"), picture.into_bytes()));
     }
     write_all(dir, &files, &[])
 }
 
 /// Heads the columns of [`line`].
-const HEAD: &str = "                 error      pairs  time [ms]  configuration\n";
+const HEAD: &str = "                 error   work [M]      pairs  time [ms]  configuration\n";
 
 /// Writes one line of a verdict: who, its error, what it costs, and how it is set.
 fn line(who: &str, row: &Tried, error: f64) -> String {
     let pairs = row.pairs().map_or(String::new(), |pairs| pairs.to_string());
+    let work = row.work().map_or(String::new(), |work| format!("{:.3}", work / 1e6));
     let (time, configuration) = (1e3 * row.wall_time.median, &row.configuration);
-    format!("{who:>13} {error:>8.1e} {pairs:>10} {time:>10.2}  {configuration}\n")
+    format!("{who:>13} {error:>8.1e} {work:>10} {pairs:>10} {time:>10.2}  {configuration}\n")
 }
 
 /// Names a line of the verdict.
 fn who((among, price): (Among, Price)) -> &'static str {
     match price {
         Price::Pairs => "fewest pairs",
-        Price::Time => among.name(),
+        Price::Work => among.name(),
     }
 }
 
@@ -280,7 +287,7 @@ fn told(rows: &[Tried], candidates: &[Candidate], question: Question) -> String 
     for one in VERDICT.into_iter().skip(1) {
         text += &standing(rows, one, question);
     }
-    text += "\non the front of time and error:\n";
+    text += "\non the front of work and error:\n";
     for (row, error) in ranking::front(rows, question.criterion) {
         text += &line("", row, error);
     }
