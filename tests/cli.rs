@@ -370,7 +370,7 @@ fn recommended_scene_reaches_the_error() {
         "\n          otm ",
         "\nfinite elements ",
         "grids of fewer than 4 cells are left out (one to a patch of initial velocity",
-        "ready to run: lme-mpm run o/recommended.toml",
+        "ready to run: lme-mpm run 'o/recommended.toml'",
     ] {
         assert!(printed.contains(words), "{words}: {printed}");
     }

@@ -315,3 +315,29 @@ fn verdicts_are_the_same_twice() {
                 < 1e-9
     );
 }
+
+/// The weights of the work meet the instructions that they were fitted to: four of five runs to a
+/// fifth, the worst to two thirds.
+#[test]
+fn work_is_near_to_instructions() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/instructions/work.csv");
+    let text = fs::read_to_string(path).unwrap();
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let off = |record: Result<csv::StringRecord, csv::Error>| -> f64 {
+        let cells = record.unwrap();
+        let count = |name: &str| {
+            let at = header.iter().position(|column| column == name)?;
+            cells[at].parse::<u64>().ok()
+        };
+        let mut cost = Cost::default();
+        for (name, place) in cost.places() {
+            *place = count(name).unwrap_or(0);
+        }
+        (work(&cost) / count("instructions").unwrap() as f64 - 1.0).abs()
+    };
+    let mut off: Vec<f64> = reader.records().map(off).collect();
+    off.sort_by(f64::total_cmp);
+    assert!(off.len() > 70 && off[off.len() * 4 / 5] < 0.2, "{off:?}");
+    assert!(off[off.len() - 1] < 0.667, "{off:?}");
+}
