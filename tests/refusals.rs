@@ -553,7 +553,7 @@ fn merged_logs_are_whole() {
         (String::new(), &["line 1", "there is no run"][..]),
         (format!("{}\n", log.lines().next().unwrap()), &["line 1", "there is no run"]),
         (log[..log.len() - 9].to_string(), &["line 4", "not a whole run"]),
-        (log.replace(time, "nan"), &["line 4", "not a whole run", "finite"]),
+        (log.replace(time, "nan"), &["line 4", "`nan` of wall_time is no finite number"]),
         (log.replace(time, "-1"), &["line 4", "not a whole run"]),
     ] {
         fs::write(dir.join("log.csv"), bad).unwrap();

@@ -1,7 +1,9 @@
 //! Verdicts: which grids are tried, that the cheapest is the cheapest, and what its neighbours
 //! say of it.
 
+use crate::support::program;
 use crate::support::*;
+use lme_mpm::method::cost::Cost;
 use lme_mpm::scene::DYKA;
 use lme_mpm::setup;
 use lme_mpm::study::configuration::{Configuration, Template};
@@ -11,6 +13,7 @@ use lme_mpm::study::pool;
 use lme_mpm::study::ranking::{Among, Price, Question, Tried, WallTime, cheapest, summarise};
 use lme_mpm::study::trade::{grid, least_pairs, left_out, levels};
 use lme_mpm::study::verdict::{self, Candidate, FRAGILE, Neighbour};
+use lme_mpm::study::work::work;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -274,4 +277,67 @@ fn verdicts_on_shipped_scenes() {
         }
     }
     approve("verdicts__shipped", &table);
+}
+
+/// Asked twice, the program gives one answer: all that it writes is the same but for times, and so
+/// is what it recommends, though the times of runs differ. The work is the sum of the counters,
+/// each times its weight.
+#[test]
+fn verdicts_are_the_same_twice() {
+    let dir = program::directory("twice");
+    let ask = |out: &str| {
+        let question = ["recommend", "vibration", "--error", "1%", "--quantity", "displacement"];
+        let output = program::program(&dir, &[&question[..], &["--out", out]].concat());
+        assert!(output.status.success(), "{}", program::text(&output.stderr));
+        let read = |name: &str| fs::read_to_string(dir.join(out).join(name)).unwrap();
+        let table = read("cheapest.csv");
+        let mut reader = csv::Reader::from_reader(table.as_bytes());
+        let header = reader.headers().unwrap().clone();
+        let time = header.iter().position(|name| name == "wall_time").unwrap();
+        let untimed = |record: Result<csv::StringRecord, csv::Error>| -> Vec<String> {
+            let cells = record.unwrap();
+            let own = cells.iter().enumerate().filter(|(n, _)| *n != time);
+            own.map(|(_, cell)| cell.to_string()).collect()
+        };
+        let cheapest: Vec<Vec<String>> = reader.records().map(untimed).collect();
+        let runs = read("runs.csv");
+        assert!(runs.lines().count() > 100);
+        (read("recommended.toml"), read("neighbours.csv"), cheapest, read("displacement.svg"))
+    };
+    assert_eq!(ask("one"), ask("two"));
+    let mut cost = Cost { steps: 2, particle_node_pairs: 30, exponentials: 5, ..Cost::default() };
+    let before = work(&cost);
+    cost.particle_node_pairs += 1;
+    let pair = work(&cost) - before;
+    assert!(
+        pair > 1.0
+            && (work(&Cost { particle_node_pairs: 7, ..Cost::default() }) / pair - 7.0).abs()
+                < 1e-9
+    );
+}
+
+/// The weights of the work meet the instructions that they were fitted to: four of five runs to a
+/// fifth, the worst to two thirds.
+#[test]
+fn work_is_near_to_instructions() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/instructions/work.csv");
+    let text = fs::read_to_string(path).unwrap();
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let off = |record: Result<csv::StringRecord, csv::Error>| -> f64 {
+        let cells = record.unwrap();
+        let count = |name: &str| {
+            let at = header.iter().position(|column| column == name)?;
+            cells[at].parse::<u64>().ok()
+        };
+        let mut cost = Cost::default();
+        for (name, place) in cost.places() {
+            *place = count(name).unwrap_or(0);
+        }
+        (work(&cost) / count("instructions").unwrap() as f64 - 1.0).abs()
+    };
+    let mut off: Vec<f64> = reader.records().map(off).collect();
+    off.sort_by(f64::total_cmp);
+    assert!(off.len() > 70 && off[off.len() * 4 / 5] < 0.2, "{off:?}");
+    assert!(off[off.len() - 1] < 0.667, "{off:?}");
 }

@@ -29,7 +29,8 @@ pub enum Command {
     /// for each probe, and results.txt, which lists them. They replace a directory
     /// that is empty or holds nothing but what its results.txt lists. A run that
     /// breaks down leaves history.failed.csv only, with exit code 1; so does Ctrl-C,
-    /// with exit code 130.
+    /// with exit code 130. Shows eight figures of the summary, on a terminal also the
+    /// first probe.
     #[command(
         after_help = "Example:\n  lme-mpm run dyka --set grid.cells=160 --set time.cfl=0.9 --out out/fine"
     )]
@@ -43,11 +44,14 @@ pub enum Command {
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
         /// No progress bar and no summary
-        #[arg(long, short)]
+        #[arg(long, short, conflicts_with = "all")]
         quiet: bool,
         /// Take warnings for errors: the results are written, and the exit code is 1
         #[arg(long)]
         strict: bool,
+        /// Show the whole summary, not the eight figures that matter most
+        #[arg(long)]
+        all: bool,
     },
     /// List the shipped scenes, print one to start from, or the schema of scenes
     #[command(

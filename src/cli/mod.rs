@@ -1,6 +1,7 @@
 //! The commands of the program stand here: what a user types, and what the terminal shows.
 
 mod arguments;
+mod run;
 mod studies;
 mod terminal;
 mod verdicts;
@@ -8,36 +9,46 @@ mod verdicts;
 use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments};
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
-use comfy_table::{CellAlignment, Table, presets};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lme_mpm::method::basis::{Basis, Support};
-use lme_mpm::output::summary::SummaryLine;
 use lme_mpm::output::{files, report};
 use lme_mpm::port::check::{self, Tolerance};
 use lme_mpm::port::points::{self, Points};
-use lme_mpm::run::Warning;
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
-use lme_mpm::scene::{DYKA, SHIPPED, Scene, declare, shipped};
+use lme_mpm::scene::{SHIPPED, declare, shipped};
 use lme_mpm::study::ranking::Question;
-use std::io::Write;
-use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use run::{Show, built_in, placed, run};
+use std::path::Path;
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
 use terminal::{open, print_bytes};
 
 const BOLD: anstyle::Style = anstyle::Style::new().bold();
-const RED: anstyle::Style =
-    anstyle::Style::new().bold().fg_color(Some(anstyle::Color::Ansi(anstyle::AnsiColor::Red)));
-
 /// Does the command that was typed, and tells what went wrong.
 pub fn main() -> ExitCode {
-    let done = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return ExitCode::from(terminal::tell_usage(&error)),
+    };
+    match dispatch(arguments.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fault) => {
+            terminal::tell(&fault);
+            ExitCode::from(fault.exit_code())
+        }
+    }
+}
+
+fn dispatch(command: Option<Command>) -> Result<(), Fault> {
+    match command {
         None => built_in(),
-        Some(Command::Run { scene, out, set, quiet, strict }) => files::scene(&scene, &set)
-            .and_then(|read| run(&read, out, quiet))
-            .and_then(|warnings| warn(&warnings, strict)),
+        Some(Command::Run { scene, out, set, quiet, strict, all }) => {
+            let show = [Show::Chief, Show::All, Show::Nothing];
+            let show = show[if quiet { 2 } else { usize::from(all) }];
+            let read = files::scene(&scene, &set)?;
+            let warnings =
+                run(&read, out, show).map_err(|fault| placed(fault, &read, &scene, &set))?;
+            terminal::warn(&warnings, strict)
+        }
         Some(Command::Scenes { ask }) => scenes(ask),
         Some(Command::Completions { shell }) => completions(shell),
         Some(Command::Exact { scene, points }) => exact(&scene, &points),
@@ -59,97 +70,7 @@ pub fn main() -> ExitCode {
         Some(Command::Stability { rows, scene, out, jobs }) => {
             studies::stability(&rows, scene.as_deref(), &out, jobs)
         }
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(fault) => {
-            let message = match &fault {
-                Fault::Scene(error) => error.render(&annotate_snippets::Renderer::styled()),
-                _ => format!("{RED}error{RED:#}: {fault}"),
-            };
-            // If even this cannot be said, the exit code says it.
-            writeln!(anstream::stderr(), "{message}").ok();
-            ExitCode::from(fault.exit_code())
-        }
     }
-}
-
-fn built_in() -> Result<(), Fault> {
-    let scene = lme_mpm::run::parse("dyka", "dyka.toml (built in)", DYKA, &[])?;
-    warn(&run(&scene, None, false)?, false)
-}
-
-/// Says what a run is warned of; with `strict` that is an error.
-fn warn(warnings: &[Warning], strict: bool) -> Result<(), Fault> {
-    if strict && !warnings.is_empty() {
-        let list: Vec<String> = warnings.iter().map(Warning::to_string).collect();
-        return Err(Fault::Warned(list.join("\n")));
-    }
-    for warning in warnings {
-        writeln!(anstream::stderr(), "{BOLD}warning{BOLD:#}: {warning}").ok();
-    }
-    Ok(())
-}
-
-/// Runs a scene, writes its results, and gives what they are warned of.
-fn run(scene: &Scene, out: Option<PathBuf>, quiet: bool) -> Result<Vec<Warning>, Fault> {
-    let dir = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
-    let interrupted = terminal::interrupted()?;
-    let steps = scene.sizes().2 as u64;
-    let bar = ProgressBar::with_draw_target(
-        Some(steps),
-        if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() },
-    );
-    let template =
-        |text: &str| ProgressStyle::with_template(text).unwrap_or(ProgressStyle::default_bar());
-    // With wide functions in 3D this takes as long as some steps.
-    bar.set_style(template("predicting the largest stable time step ({elapsed})"));
-    bar.enable_steady_tick(std::time::Duration::from_millis(250));
-    let tell = (steps / 200).max(1);
-    let lines = report::run_into(&dir, scene, &mut |step| {
-        if step == 1 {
-            bar.disable_steady_tick();
-            bar.set_style(template("{bar:40} {pos}/{len} steps, {eta} left"));
-        }
-        if (step as u64).is_multiple_of(tell) {
-            bar.set_position(step as u64);
-        }
-        match interrupted.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    });
-    bar.finish_and_clear();
-    let (lines, warnings) = lines?;
-    if !quiet {
-        let text = format!(
-            "{BOLD}{}{BOLD:#}\n{}\nwritten to {}\n",
-            scene.title,
-            table(&lines),
-            dir.display()
-        );
-        print_bytes(text.as_bytes())?;
-    }
-    Ok(warnings)
-}
-
-/// Lays out the summary as a table for the terminal.
-fn table(lines: &[SummaryLine]) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::NOTHING).set_header(["quantity", "value", "unit"]);
-    for line in lines {
-        let value = match line.value {
-            whole if whole == whole.trunc() && whole.abs() < 1e15 => format!("{whole}"),
-            small if small.abs() < 1e-3 || small.abs() >= 1e6 => format!("{small:.4e}"),
-            x => format!("{x:.5}"),
-        };
-        let unit = if line.unit == "1" { "" } else { line.unit };
-        table.add_row([&line.quantity.replace('_', " "), &value, unit]);
-    }
-    if let Some(column) = table.column_mut(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    table
 }
 
 /// Does `lme-mpm scenes`.
@@ -229,7 +150,7 @@ fn trace(
 ) -> Result<(), Fault> {
     let scene = files::scene(path, sets)?;
     lme_mpm::port::trace::affordable(&scene, steps)?;
-    report::stable(&scene)?;
+    report::stable(&scene).map_err(|fault| placed(fault, &scene, path, sets))?;
     let place = out.filter(|out| *out != Path::new("-"));
     if let Some(out) = place {
         writable(path, out)?;

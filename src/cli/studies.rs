@@ -1,12 +1,12 @@
 //! These commands run studies.
 
 use super::arguments::RowArguments;
-use super::terminal::print_bytes;
+use super::terminal::{print_bytes, print_report, quoted};
 use indicatif::{ProgressBar, ProgressStyle};
 use lme_mpm::output::figure;
 use lme_mpm::output::files::{self, prepare, write_all};
 use lme_mpm::scene::DYKA;
-use lme_mpm::scene::fault::Fault;
+use lme_mpm::scene::fault::{Fault, unprintable};
 use lme_mpm::setup;
 use lme_mpm::study::configuration::Template;
 use lme_mpm::study::gamma::{self as gammas, AtGamma};
@@ -38,11 +38,19 @@ pub fn comparable(template: &Template) -> Result<(), Fault> {
 }
 
 /// Prints the command of every row of a study, ready for a shell.
+///
+/// Errors: [`Fault::Argument`] for a scene whose name does not fit into a line of text.
 pub fn list_rows(study: &str, scene: Option<&Path>, names: &[String]) -> Result<(), Fault> {
-    let quoted = |text: String| format!("'{}'", text.replace('\'', r"'\''"));
-    let scene = scene
-        .map_or(String::new(), |path| format!(" --scene {}", quoted(path.display().to_string())));
-    let line = |name: &String| format!("lme-mpm {study}{scene} --row {}\n", quoted(name.clone()));
+    let word = |path: &Path| match path.to_str().filter(|name| !name.contains(unprintable)) {
+        Some(name) => Ok(format!(" --scene {}", quoted(name))),
+        None => Err(Fault::Argument {
+            argument: "--scene",
+            problem: format!("`{}` cannot stand in a line of a shell", path.display()),
+            allowed: "a file whose name is UTF-8 without control characters",
+        }),
+    };
+    let scene = scene.map(word).transpose()?.unwrap_or_default();
+    let line = |name: &String| format!("lme-mpm {study}{scene} --row {}\n", quoted(name));
     print_bytes(names.iter().map(line).collect::<String>().as_bytes())
 }
 
@@ -80,7 +88,7 @@ pub fn gamma(arguments: &RowArguments, dir: &Path, jobs: u16) -> Result<(), Faul
         files.push((format!("{name}.svg"), picture.into_bytes()));
     }
     write_all(dir, &files, &[])?;
-    print_bytes(format!("written to {}\n", dir.display()).as_bytes())
+    print_report("", "", dir)
 }
 
 /// Refuses to write over what is merged: the study's own table in `dir`.
@@ -116,11 +124,11 @@ pub fn orders(arguments: &RowArguments, scene: &Path, dir: &Path, jobs: u16) -> 
         rows
     };
     write_all(dir, &[("orders.csv".to_string(), orders::table(&rows)?)], &[])?;
-    print_bytes(fitted(dir, &rows).as_bytes())
+    print_report("", &fitted(&rows), dir)
 }
 
 /// Tells the terminal the orders in h with two particles per cell over one span.
-fn fitted(dir: &Path, rows: &[orders::Ascent]) -> String {
+fn fitted(rows: &[orders::Ascent]) -> String {
     let mut table = comfy_table::Table::new();
     table.load_style(comfy_table::presets::NOTHING);
     table.set_header(["velocity error at the finest", "its order in h", "way"]);
@@ -138,7 +146,7 @@ fn fitted(dir: &Path, rows: &[orders::Ascent]) -> String {
         };
         table.add_row(cells);
     }
-    format!("{table}\nall {} rows are written to {}\n", rows.len(), dir.display())
+    format!("{table}\nall {} rows are in the file\n", rows.len())
 }
 
 /// Does `lme-mpm stability`.
@@ -180,11 +188,11 @@ pub fn stability(
         rows
     };
     write_all(dir, &[("stability.csv".to_string(), map::table(&rows)?)], &[])?;
-    print_bytes(limits(dir, &rows).as_bytes())
+    print_report("", &limits(&rows), dir)
 }
 
 /// Tells the terminal the map with two particles per cell and no offset.
-fn limits(dir: &Path, rows: &[map::Mapped]) -> String {
+fn limits(rows: &[map::Mapped]) -> String {
     let mut table = comfy_table::Table::new();
     table.load_style(comfy_table::presets::NOTHING);
     table.set_header(["method", "mass", "basis", "integrator", "predicted", "measured"]);
@@ -209,11 +217,9 @@ fn limits(dir: &Path, rows: &[map::Mapped]) -> String {
     }
     format!(
         "Largest stable c Δt / h (two particles per cell, no offset; all in the file):\n{table}\n\
-         {} combinations, {} without a limit; measured and predicted differ by at most {:.1}%\n\
-         written to {}\n",
+         {} combinations, {} without a limit; measured and predicted differ by at most {:.1}%\n",
         rows.len(),
         rows.len() - known,
-        100.0 * worst,
-        dir.display()
+        100.0 * worst
     )
 }

@@ -2,7 +2,7 @@
 
 use super::arguments::TradeArguments;
 use super::studies::{comparable, list_rows, progress, template};
-use super::terminal::print_bytes;
+use super::terminal::{print_bytes, print_report, quoted};
 use lme_mpm::output::figure;
 use lme_mpm::output::files::{self, prepare, write_all};
 use lme_mpm::run::table::shortest;
@@ -39,7 +39,7 @@ pub fn trade(arguments: &TradeArguments) -> Result<(), Fault> {
         }
     };
     write(dir, &rows)?;
-    print_bytes(report(dir, &rows).as_bytes())
+    print_report("", &report(&rows), dir)
 }
 
 /// Runs one configuration and prints its part of the log.
@@ -87,35 +87,42 @@ fn write(dir: &Path, rows: &[Tried]) -> Result<(), Fault> {
         let efforts: Vec<figure::Effort> = rows
             .iter()
             .map(|row| figure::Effort {
-                work: row.wall_time.median,
+                work: row.work().unwrap_or_default(),
                 error: row.error(criterion),
                 group: row.configuration.family(),
             })
+            .filter(|effort| effort.error.is_some())
             .collect();
         let front = ranking::front(rows, criterion);
-        let front = front.iter().map(|(row, error)| (row.wall_time.median, *error)).collect();
+        let front = front.iter().filter_map(|(row, error)| Some((row.work()?, *error))).collect();
         let title = format!("Work and precision: {name}");
-        let picture = figure::work_precision(&title, "time of a run [s]", &efforts, &front);
+        let picture = figure::work_precision(
+            &title,
+            "counted work of a run [instructions]",
+            &efforts,
+            &front,
+        );
         files.push((format!("{name}.svg"), picture.into_bytes()));
     }
     write_all(dir, &files, &[])
 }
 
 /// Heads the columns of [`line`].
-const HEAD: &str = "                 error      pairs  time [ms]  configuration\n";
+const HEAD: &str = "                 error   work [M]      pairs  time [ms]  configuration\n";
 
 /// Writes one line of a verdict: who, its error, what it costs, and how it is set.
 fn line(who: &str, row: &Tried, error: f64) -> String {
     let pairs = row.pairs().map_or(String::new(), |pairs| pairs.to_string());
+    let work = row.work().map_or(String::new(), |work| format!("{:.3}", work / 1e6));
     let (time, configuration) = (1e3 * row.wall_time.median, &row.configuration);
-    format!("{who:>13} {error:>8.1e} {pairs:>10} {time:>10.2}  {configuration}\n")
+    format!("{who:>13} {error:>8.1e} {work:>10} {pairs:>10} {time:>10.2}  {configuration}\n")
 }
 
 /// Names a line of the verdict.
 fn who((among, price): (Among, Price)) -> &'static str {
     match price {
         Price::Pairs => "fewest pairs",
-        Price::Time => among.name(),
+        Price::Work => among.name(),
     }
 }
 
@@ -135,7 +142,7 @@ fn standing(rows: &[Tried], (among, price): (Among, Price), question: Question) 
 }
 
 /// Tells the terminal the verdicts of a trade by level, and what failed.
-fn report(dir: &Path, rows: &[Tried]) -> String {
+fn report(rows: &[Tried]) -> String {
     let mut text = format!("The cheapest of {} configurations by error:\n", rows.len());
     for criterion in Criterion::ALL {
         for error in LEVELS {
@@ -146,7 +153,7 @@ fn report(dir: &Path, rows: &[Tried]) -> String {
             }
         }
     }
-    text + &failed(rows) + &format!("\nwritten to {}\n", dir.display())
+    text + &failed(rows) + "\n"
 }
 
 /// Names the configurations that failed, each with its reason.
@@ -197,18 +204,14 @@ pub fn recommend(
     let quantity = criterion.name();
     if candidates.is_empty() {
         let best = ranking::best(&rows, Among::Particles, criterion);
-        let best = best.map_or(f64::INFINITY, |(_, error)| error);
+        let best = best.map(|(_, error)| error);
         return Err(Fault::NothingReaches { quantity, error, best });
     }
     let text = told(&rows, &candidates, question);
     let (asked, left) = (shortest(error * 100.0), trades::left_out(&template.scene));
     let counted = format!("{} configurations measured, {dearer} dearer ones not", rows.len());
-    print_bytes(
-        format!(
-            "For a {quantity} error of at most {asked}%:\n{HEAD}{text}\n{counted}; {left}.\n{ready}"
-        )
-        .as_bytes(),
-    )
+    let head = format!("For a {quantity} error of at most {asked}%:\n{HEAD}");
+    print_report("", &format!("{head}{text}\n{counted}; {left}.\n{ready}"), &dir)
 }
 
 /// Writes the neighbours and the scenes that were chosen, removes those of an earlier question,
@@ -223,7 +226,8 @@ fn write_chosen(
     let mut ready = String::new();
     for (file, candidate) in chosen(candidates, question) {
         let text = scene_file(template, candidate, question)?;
-        ready += &format!("ready to run: lme-mpm run {}\n", dir.join(file).display());
+        let path = quoted(&dir.join(file).display().to_string());
+        ready += &format!("ready to run: lme-mpm run {path}\n");
         files.push((file.to_string(), text.into_bytes()));
     }
     write_all(dir, &files, &FILES.map(String::from))?;
@@ -283,7 +287,7 @@ fn told(rows: &[Tried], candidates: &[Candidate], question: Question) -> String 
     for one in VERDICT.into_iter().skip(1) {
         text += &standing(rows, one, question);
     }
-    text += "\non the front of time and error:\n";
+    text += "\non the front of work and error:\n";
     for (row, error) in ranking::front(rows, question.criterion) {
         text += &line("", row, error);
     }

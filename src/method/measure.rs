@@ -31,7 +31,10 @@ pub struct Order {
 
 impl std::fmt::Display for Order {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:.4} ± {:.4}", self.slope, self.half_width)
+        match (self.slope + self.half_width).is_finite() {
+            true => write!(f, "{:.4} ± {:.4}", self.slope, self.half_width),
+            false => write!(f, "none"),
+        }
     }
 }
 

@@ -67,6 +67,11 @@ fn layout(plots: &[Plot], size: (f64, f64), axes: &Axes) -> Layout {
 
 /// Draws curves; the x axis of plain axes begins at 0 or below.
 pub fn draw(curves: Vec<Curve>, axes: &Axes) -> String {
+    let (plots, layout) = laid_out(curves, axes);
+    own_ids(&render_to_svg(plots, layout))
+}
+
+fn laid_out(curves: Vec<Curve>, axes: &Axes) -> (Vec<Plot>, Layout) {
     let xs = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.0);
     let (first, last) = (xs().fold(0.0, f64::min), xs().fold(0.0, f64::max));
     let plots: Vec<Plot> = curves
@@ -80,13 +85,35 @@ pub fn draw(curves: Vec<Curve>, axes: &Axes) -> String {
         })
         .collect();
     let layout = layout(&plots, SIZE, axes);
-    let layout =
-        if axes.log { layout } else { layout.with_x_axis_min(first).with_x_axis_max(last) };
-    own_ids(&render_to_svg(plots, layout))
+    match axes.log {
+        true => (plots, layout),
+        false => (plots, layout.with_x_axis_min(first).with_x_axis_max(last)),
+    }
 }
 
 /// Draws the history of one probe, computed and, where known, exact.
 pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
+    let (curves, axes) = of_probe(scene, probe, history);
+    draw(curves, &axes)
+}
+
+/// Draws the same with characters and colours, small, for a terminal of any background.
+pub fn in_terminal(scene: &Scene, probe: &Probe, history: &Table) -> String {
+    const ROWS: u32 = 18;
+    let (mut curves, axes) = of_probe(scene, probe, history);
+    let over = if curves.len() > 1 { ", computed (blue) over exact (grey)" } else { "" };
+    curves.iter_mut().for_each(|curve| curve.legend.clear());
+    let head = format!("{}{over}", axes.y_label);
+    let (plots, layout) = laid_out(curves, &Axes { title: String::new(), ..axes });
+    let grey = || "#888888".to_string();
+    let theme =
+        Theme { axis_color: grey(), tick_color: grey(), text_color: grey(), ..Theme::light() };
+    let layout = layout.with_y_label("").with_theme(theme).with_show_grid(false);
+    let picture = render_multiple(plots, layout.with_term_rows(ROWS));
+    format!("{head}\n{}", TerminalBackend::new(78, ROWS as usize).render_scene(&picture))
+}
+
+fn of_probe(scene: &Scene, probe: &Probe, history: &Table) -> (Vec<Curve>, Axes) {
     let column = |name: &str| history.column(name).unwrap_or_default();
     let (t, computed) = (column("t"), column(&probe.name));
     let exact = column(&format!("{}_exact", probe.name));
@@ -114,7 +141,7 @@ pub fn probe(scene: &Scene, probe: &Probe, history: &Table) -> String {
         format!("{name} nearest to {} m [{y_prefix}{unit}]", at.join(", ")),
         false,
     );
-    draw(curves, &axes)
+    (curves, axes)
 }
 
 /// Draws curves with names, each in a colour of its own.

@@ -7,7 +7,7 @@ use super::{figure, vtk};
 use crate::method::breakdown::Breakdown;
 use crate::method::choice::Mass;
 use crate::run::stability::{self, Critical};
-use crate::run::table::{csv, shortest};
+use crate::run::table::{Table, csv, shortest};
 use crate::run::{Stopped, Warning, run_knowing};
 use crate::scene::Scene;
 use crate::scene::fault::Fault;
@@ -44,8 +44,17 @@ pub fn stable(scene: &Scene) -> Result<Option<Critical>, Fault> {
     })
 }
 
-/// Runs `scene` and writes its results into `dir`; returns the summary, and what is to be warned
-/// of.
+/// A run is done: its results are written.
+#[derive(Debug)]
+pub struct Done {
+    /// The summary.
+    pub lines: Vec<SummaryLine>,
+    pub history: Table,
+    /// What the results may not be trusted for.
+    pub warnings: Vec<Warning>,
+}
+
+/// Runs `scene` and writes its results into `dir`.
 ///
 /// A complete run leaves `history.csv`, `particles.csv`, `summary.csv`,
 /// `cost.csv` and `<probe>.svg`, in 2D and 3D also `particles.svg` and, if asked
@@ -55,12 +64,13 @@ pub fn stable(scene: &Scene) -> Result<Option<Critical>, Fault> {
 ///
 /// Errors: [`Fault::Unstable`] for a Δt above the predicted limit and [`Fault::Foreign`] for
 /// what is not ours in `dir`, before anything is written; [`Fault::Write`]; [`Fault::Run`]
-/// when the run breaks down.
+/// when the run breaks down; [`Fault::NotFinite`] for results that are no numbers, of which
+/// nothing is written.
 pub fn run_into(
     dir: &Path,
     scene: &Scene,
     progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
-) -> Result<(Vec<SummaryLine>, Vec<Warning>), Fault> {
+) -> Result<Done, Fault> {
     let limit = stable(scene)?;
     prepare(dir)?;
     let start = Instant::now();
@@ -90,10 +100,10 @@ pub fn run_into(
     files.extend(vtk::files(&outcome.frames)?);
     commit(dir, &files)?;
     lines.extend(cost);
-    Ok((lines, outcome.warnings))
+    Ok(Done { lines, history: outcome.history, warnings: outcome.warnings })
 }
 
-/// Leaves the history up to the breakdown, and names what to try.
+/// Leaves the history up to the breakdown, if its numbers are finite, and names what to try.
 fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Fault {
     let history = stopped.history.csv();
     let left = match history.and_then(|csv| commit(dir, &[(FAILED.to_string(), csv)])) {

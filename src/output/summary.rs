@@ -26,7 +26,10 @@ impl SummaryLine {
 
 /// These scales make errors relative. For a body thrown at v0 they are those of
 /// the bar: v0, the plateau Z v0/2, and v0 L/4c. For a mode they are V, Z V and V/ω
-/// with its largest speed V, and so for a motion with V and amplitude of its own; for loads V, Z V and V L/c with V = b L/c + t/Z.
+/// with its largest speed V, and so for a motion with V and amplitude of its own. Loads add V, Z V
+/// and V L/c with V = b L/c + t/Z to what the body starts with. Where nothing acts all are 0.
+///
+/// Test: `summary_scales_by_what_acts` in `tests/gate.rs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
     /// (m/s).
@@ -38,24 +41,18 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// Takes the scales from what moves the body: its throw, its mode, or its loads.
+    /// Takes the scales from what moves the body: its throw, or its mode, and its loads.
     pub fn of(scene: &Scene) -> Self {
-        let c = wave_speed(&scene.body);
-        let (rho, transit) = (scene.body.density, scene.body.length[0] / c);
-        let size = |list: &[f64]| libm::sqrt(list.iter().map(|x| x * x).sum());
-        let thrown = match &scene.motion {
-            Motion::Regions(regions) => {
-                regions.iter().map(|region| size(&region.velocity)).fold(0.0, f64::max)
-            }
-            _ => 0.0,
-        };
-        if thrown > 0.0 {
-            return Scales {
-                velocity: thrown,
-                stress: rho * c * thrown / 2.0,
-                displacement: thrown * scene.body.length[0] / (4.0 * c),
-            };
+        let (own, loads) = (Scales::of_motion(scene), Scales::of_loads(scene));
+        Scales {
+            velocity: own.velocity + loads.velocity,
+            stress: own.stress + loads.stress,
+            displacement: own.displacement + loads.displacement,
         }
+    }
+
+    fn of_motion(scene: &Scene) -> Self {
+        let c = wave_speed(&scene.body);
         let (velocity, displacement) = match &scene.motion {
             Motion::Vibration { mode, velocity } => {
                 let mode = Mode::new(scene.ends(0), *mode, scene.body.length[0]);
@@ -68,15 +65,27 @@ impl Scales {
                 let arc = (spec.angle * spec.radius).abs();
                 (arc * spec.frequency, arc)
             }
-            Motion::Regions(_) => {
-                let body = scene.body_force.as_ref().map_or(0.0, |b| size(&b.acceleration));
-                let sides = scene.traction.iter().flat_map(|load| load.sides.iter().flatten());
-                let traction = sides.map(|t| size(t)).fold(0.0, f64::max);
-                let velocity = body * transit + traction / (rho * c);
-                (velocity, velocity * transit)
+            Motion::Regions(regions) => {
+                let sizes = regions.iter().map(|region| size(&region.velocity));
+                let thrown = sizes.fold(0.0, f64::max);
+                return Scales {
+                    velocity: thrown,
+                    stress: scene.body.density * c * thrown / 2.0,
+                    displacement: thrown * scene.body.length[0] / (4.0 * c),
+                };
             }
         };
-        Scales { velocity, stress: rho * c * velocity, displacement }
+        Scales { velocity, stress: scene.body.density * c * velocity, displacement }
+    }
+
+    fn of_loads(scene: &Scene) -> Self {
+        let c = wave_speed(&scene.body);
+        let (Z, transit) = (scene.body.density * c, scene.body.length[0] / c);
+        let body = scene.body_force.as_ref().map_or(0.0, |b| size(&b.acceleration));
+        let sides = scene.traction.iter().flat_map(|load| load.sides.iter().flatten());
+        let traction = sides.map(|t| size(t)).fold(0.0, f64::max);
+        let velocity = body * transit + traction / Z;
+        Scales { velocity, stress: Z * velocity, displacement: velocity * transit }
     }
 
     /// Picks the scale of a quantity.
@@ -87,6 +96,10 @@ impl Scales {
             Quantity::Displacement(_) => self.displacement,
         }
     }
+}
+
+fn size(list: &[f64]) -> f64 {
+    libm::sqrt(list.iter().map(|x| x * x).sum())
 }
 
 /// Gives all lines of the summary; `wall_time` (s) of the time loop.
@@ -109,15 +122,19 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<SummaryLin
 }
 
 /// Gives the predicted limit of Δt, and the part of it that `dt` (s) is: of the limit over all
-/// offsets where particles move, and else of that at the start.
+/// offsets where particles move, and else of that at the start. A body that nothing strains has
+/// no limit, and no such line.
 pub fn limit_lines(limit: &Critical, dt: f64) -> Vec<SummaryLine> {
-    let finite = |limit: f64| limit.min(f64::MAX);
-    let mut lines = vec![SummaryLine::new("critical_time_step", finite(limit.start), "s")];
-    if let Some(least) = limit.over_offsets {
-        lines.push(SummaryLine::new("critical_time_step_over_offsets", finite(least), "s"));
-    }
-    lines.push(SummaryLine::new("fraction_of_critical", dt / finite(limit.used()), "1"));
-    lines
+    let over_offsets = limit.over_offsets.unwrap_or(f64::INFINITY);
+    [
+        ("critical_time_step", limit.start, limit.start, "s"),
+        ("critical_time_step_over_offsets", over_offsets, over_offsets, "s"),
+        ("fraction_of_critical", limit.used(), dt / limit.used(), "1"),
+    ]
+    .into_iter()
+    .filter(|(_, limit, ..)| limit.is_finite())
+    .map(|(name, _, value, unit)| SummaryLine::new(name, value, unit))
+    .collect()
 }
 
 /// Finds the largest size in a list.

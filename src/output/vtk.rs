@@ -17,7 +17,7 @@ pub fn name(n: usize) -> String {
 
 /// Writes all files of the series.
 ///
-/// Errors: [`Fault::Write`].
+/// Errors: [`Fault::Write`]; [`Fault::NotFinite`].
 pub fn files(frames: &[Frame]) -> Result<Vec<(String, Vec<u8>)>, Fault> {
     let mut files = Vec::new();
     for (n, frame) in frames.iter().enumerate() {
@@ -32,6 +32,7 @@ pub fn files(frames: &[Frame]) -> Result<Vec<(String, Vec<u8>)>, Fault> {
 /// Writes each particle as a vertex with its displacement, velocity, stress, density and
 /// mass; missing axes are 0.
 fn vtu(particles: &Table) -> Result<Vec<u8>, Fault> {
+    particles.finite()?;
     let count = particles.rows().len();
     let vtk = Vtk {
         version: Version::new_xml(1, 0),

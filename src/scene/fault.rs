@@ -4,7 +4,8 @@
 //! [`Fault::Read`], …) ends with 2 before anything is written. A run that breaks down
 //! ([`BrokenDown`]) ends with 1 and leaves its history under a name that says so; one that is
 //! interrupted does the same and ends with 130; a port whose trace differs
-//! ([`Fault::Differs`]) ends with 1, too.
+//! ([`Fault::Differs`]) ends with 1, too, and so do results that are no finite numbers
+//! ([`Fault::NotFinite`]).
 
 use crate::method::breakdown::{Breakdown, BrokenDown};
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -35,11 +36,12 @@ impl SceneError {
     /// Draws the offending line with the error below it.
     pub fn render(&self, renderer: &Renderer) -> String {
         let title = match self.key.as_str() {
-            "" => self.problem.clone(),
-            key => format!("{key}: {}", self.problem),
+            "" => visible(&self.problem, &['\n']),
+            key => visible(&format!("{key}: {}", self.problem), &[]),
         };
+        let path = visible(&self.path, &[]);
         let snippet = Snippet::source(&self.text)
-            .path(&self.path)
+            .path(&path)
             .annotation(AnnotationKind::Primary.span(self.span.clone()));
         let mut group: Group<'_> = Level::ERROR.primary_title(title).element(snippet);
         if !self.allowed.is_empty() {
@@ -80,6 +82,12 @@ pub enum Fault {
          lme-mpm (earlier versions wrote no list); choose another --out, or move away what is there"
     )]
     Foreign { dir: PathBuf, file: PathBuf, list: &'static str },
+    #[error("cannot write standard output: {source}; {left}")]
+    Output {
+        source: std::io::Error,
+        /// What is written all the same.
+        left: String,
+    },
     #[error("{path}, line {line}: {problem}; allowed: {allowed}")]
     Points { path: String, line: u64, problem: String, allowed: String },
     #[error("{argument}: {problem}; allowed: {allowed}")]
@@ -97,9 +105,10 @@ pub enum Fault {
     )]
     Unstable { courant: f64, largest: f64, singular: bool },
     #[error(
-        "no configuration measured reaches a {quantity} error of {error}: the best has {best:.2e}"
+        "no configuration measured reaches a {quantity} error of {error}: {}",
+        best.map_or("none came to its end".to_string(), |best| format!("the best has {best:.2e}"))
     )]
-    NothingReaches { quantity: &'static str, error: f64, best: f64 },
+    NothingReaches { quantity: &'static str, error: f64, best: Option<f64> },
     #[error("no exact solution is known for this scene: {why}")]
     NoExact { why: &'static str },
     #[error(
@@ -107,6 +116,8 @@ pub enum Fault {
          compares what both have"
     )]
     Alone { place: String, problem: String },
+    #[error("{quantity} is {value}, which is no finite number and is not written")]
+    NotFinite { quantity: String, value: String },
     #[error("{0}")]
     Differs(String),
     #[error("{0}")]
@@ -126,10 +137,27 @@ impl Fault {
     pub fn exit_code(&self) -> u8 {
         match self {
             Fault::Run { broken, .. } if broken.breakdown == Breakdown::Interrupted => 130,
-            Fault::Run { .. } | Fault::Differs(_) | Fault::Warned(_) => 1,
+            Fault::Run { .. } | Fault::Differs(_) | Fault::Warned(_) | Fault::NotFinite { .. } => 1,
             _ => 2,
         }
     }
+}
+
+/// Tells whether a terminal may obey this character (a control character, or one that turns the
+/// direction of writing), or no SVG may hold it (U+FFFE and U+FFFF).
+pub fn unprintable(c: char) -> bool {
+    let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    c.is_control() || turns || matches!(c, '\u{fffe}' | '\u{ffff}')
+}
+
+/// Writes what is unprintable in a text as `\u{1b}`, `\n` and so on, but for the characters that
+/// are `kept`.
+pub fn visible(text: &str, kept: &[char]) -> String {
+    let plain = |c: char| match unprintable(c) && !kept.contains(&c) {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    };
+    text.chars().map(plain).collect()
 }
 
 impl From<Box<SceneError>> for Fault {

@@ -1,5 +1,6 @@
 //! Says what the value of a key may be, in words and as a check.
 
+use super::fault::unprintable;
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
 use std::ops::{Range, RangeBounds};
 use toml::Spanned;
@@ -79,7 +80,7 @@ impl Kind {
         match self {
             Kind::Table => "a table".into(),
             Kind::List => "a list of tables".into(),
-            Kind::Text => "a text without control characters".into(),
+            Kind::Text => "a text without control characters and U+FFFE, U+FFFF".into(),
             Kind::Name(_) => {
                 "a name of at most 64 letters, digits and _, not that of another column or file"
                     .into()
@@ -110,9 +111,9 @@ impl Kind {
                     )),
                 }
             }
-            (Kind::Text, DeValue::String(text)) => match text.chars().find(|c| c.is_control()) {
+            (Kind::Text, DeValue::String(text)) => match text.chars().find(|c| unprintable(*c)) {
                 None => Ok(Value::Word(text.to_string())),
-                Some(bad) => Err(wrong(&format!("it holds the control character {bad:?}"))),
+                Some(bad) => Err(wrong(&format!("it holds the character {bad:?}"))),
             },
             (Kind::Name(taken), DeValue::String(name)) => match unfit(name, taken) {
                 None => Ok(Value::Word(name.to_string())),

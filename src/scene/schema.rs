@@ -70,7 +70,7 @@ fn value(key: &Key, path: &str) -> Value {
         Kind::Table => table(path),
         Kind::List => json!({ "type": "array", "items": table(path) }),
         Kind::Text => {
-            json!({ "type": "string", "pattern": "^[^\\u0000-\\u001f\\u007f-\\u009f]*$" })
+            json!({ "type": "string", "pattern": "^[^\\u0000-\\u001f\\u007f-\\u009f\\u202a-\\u202e\\u2066-\\u2069\\ufffe\\uffff]*$" })
         }
         Kind::Name(taken) => json!({
             "type": "string",

@@ -44,8 +44,8 @@ impl Scene {
     /// Bounds the nodes that a particle can see, before anything is built.
     pub fn pairs_per_particle(&self) -> f64 {
         let along = |d: usize| {
-            let [before, after] = self.grid.beyond[d];
-            self.basis.most_along((before + self.grid.cells[d] + after) as f64 + 1.0)
+            let [before, after] = self.grid.beyond[d].map(|n| n as f64);
+            self.basis.most_along(before + self.grid.cells[d] as f64 + after + 1.0)
         };
         (0..self.dimension()).map(along).product()
     }

@@ -2,6 +2,7 @@
 
 use super::configuration::{Configuration, Template};
 use super::pool;
+use super::rows::size;
 use crate::output::figure::CurvePoints;
 use crate::output::summary;
 use crate::run::run;
@@ -66,9 +67,14 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// Reads the numbers in the order of [`Effect::named`].
+    /// Reads the numbers in the order of [`Effect::named`]; two of them may be negative.
     fn read(cells: &[&str]) -> Option<Self> {
-        let numbers: Option<Vec<f64>> = cells.iter().map(|cell| cell.parse().ok()).collect();
+        let named = Effect::default().named();
+        let number = |((name, _), cell): (&(&str, f64), &&str)| match *name {
+            "overshoot" | "dispersion" => cell.parse().ok(),
+            _ => size(cell),
+        };
+        let numbers: Option<Vec<f64>> = named.iter().zip(cells).map(number).collect();
         let numbers: [f64; 10] = numbers?.try_into().ok()?;
         let [velocity, stress, displacement, overshoot, total_variation, rest @ ..] = numbers;
         let [dispersion, energy_drift, pairs, exponentials, critical_courant] = rest;

@@ -4,9 +4,9 @@
 use super::configuration::{Configuration, Template};
 use super::measured::Measured;
 use super::pool;
-use super::rows::is_whole;
+use super::rows::{is_whole, no_number, size};
 use crate::output::files;
-use crate::run::table::{csv, shortest};
+use crate::run::table::{csv, not_finite, shortest};
 use crate::scene::fault::Fault;
 use std::collections::BTreeSet;
 use std::fs;
@@ -93,15 +93,15 @@ impl TimedRun {
     /// Reads the run of a line, if the line is whole.
     fn read(record: &csv::StringRecord) -> Option<Self> {
         let cell = |name: &str| record.get(columns().iter().position(|column| *column == name)?);
-        let number = |name: &str| cell(name)?.parse().ok().filter(|x: &f64| x.is_finite());
+        let number = |name: &str| size(cell(name)?);
         Some(TimedRun {
             configuration: cell("configuration")?.parse().ok()?,
-            pass: cell("pass")?.parse().ok()?,
+            pass: cell("pass")?.parse().ok().filter(|pass| (1..=PASSES).contains(pass))?,
             measured: match cell("problem")? {
                 "" => Ok(Measured::read(number)?),
                 problem => Err(problem.to_string()),
             },
-            wall_time: number("wall_time").filter(|time| *time >= 0.0)?,
+            wall_time: number("wall_time")?,
         })
     }
 }
@@ -114,14 +114,22 @@ pub fn csv_of<'a>(
     csv(&columns(), runs.into_iter().map(|run| run.cells(scene)))
 }
 
-/// Reads the runs of a log that belongs to the scene with this digest; lines that an
-/// interruption has cut short are left out.
+/// Reads the runs of a log that belongs to the scene with this digest; a last line that an
+/// interruption has cut short is left out.
 ///
-/// Errors: [`Fault::Read`]; [`Fault::Points`] with the line that is of another study.
+/// Errors: [`Fault::Read`]; [`Fault::Points`] with the line that is no run, or of another study.
 pub fn read(path: &Path, scene: &str) -> Result<Vec<TimedRun>, Fault> {
-    let lines = lines(path, scene)?;
-    Ok(lines.into_iter().filter_map(|(_, run)| run).collect())
+    let mut lines = lines(path, scene)?;
+    lines.pop_if(|(_, run, has_end)| run.is_none() && !*has_end);
+    let whole = |(line, run, _): (u64, Option<TimedRun>, bool)| {
+        run.ok_or_else(|| fault_at(path, line, NO_RUN, ALLOWED))
+    };
+    lines.into_iter().map(whole).collect()
 }
+
+const NO_RUN: &str = "this is not a whole run";
+const ALLOWED: &str =
+    "runs as `lme-mpm trade --row` prints them, with finite numbers from 0 up, each once";
 
 /// Reads logs of which every line must be whole, and every pass of a configuration stand
 /// there once; each log has at least one run.
@@ -129,19 +137,18 @@ pub fn read(path: &Path, scene: &str) -> Result<Vec<TimedRun>, Fault> {
 /// Errors: those of [`read`]; [`Fault::Points`] with the line that is not a run, or a second
 /// time the same.
 pub fn merged(paths: &[PathBuf], scene: &str) -> Result<Vec<TimedRun>, Fault> {
-    let allowed = "runs as `lme-mpm trade --row` prints them, with finite numbers, each once";
     let (mut runs, mut known) = (Vec::new(), BTreeSet::new());
     for path in paths {
         let lines = lines(path, scene)?;
         if lines.is_empty() {
-            return Err(fault_at(path, 1, "there is no run", allowed));
+            return Err(fault_at(path, 1, "there is no run", ALLOWED));
         }
-        for (line, run) in lines {
+        for (line, run, _) in lines {
             let Some(run) = run else {
-                return Err(fault_at(path, line, "this is not a whole run", allowed));
+                return Err(fault_at(path, line, NO_RUN, ALLOWED));
             };
             if !known.insert((run.configuration.to_string(), run.pass)) {
-                return Err(fault_at(path, line, "this run stands here a second time", allowed));
+                return Err(fault_at(path, line, "this run stands here a second time", ALLOWED));
             }
             runs.push(run);
         }
@@ -159,8 +166,9 @@ fn fault_at(path: &Path, line: u64, problem: &str, allowed: &str) -> Fault {
     }
 }
 
-/// Reads the lines of a log with their numbers, each with its run if it is whole.
-fn lines(path: &Path, scene: &str) -> Result<Vec<(u64, Option<TimedRun>)>, Fault> {
+/// Reads the lines of a log with their numbers, each with its run if it is whole, and whether the
+/// line has an end.
+fn lines(path: &Path, scene: &str) -> Result<Vec<(u64, Option<TimedRun>, bool)>, Fault> {
     let fault = |source| Fault::Read { path: path.to_path_buf(), source };
     let text = fs::read_to_string(path).map_err(fault)?;
     if !text.contains('\n') {
@@ -175,12 +183,15 @@ fn lines(path: &Path, scene: &str) -> Result<Vec<(u64, Option<TimedRun>)>, Fault
     for record in reader.records() {
         let record = record.map_err(|error| fault(error.into()))?;
         let line = record.position().map_or(0, |position| position.line());
-        let whole = is_whole(&record, &text, header.len());
+        let (whole, has_end) = is_whole(&record, &text, header.len());
+        if let Some((column, value)) = not_finite(&columns(), record.iter()).filter(|_| has_end) {
+            return Err(fault_at(path, line, &no_number(&column, &value), ALLOWED));
+        }
         if whole && &record[0] != scene {
             let allowed = "a log of this scene, or another --out";
             return Err(fault_at(path, line, "this run belongs to another scene", allowed));
         }
-        lines.push((line, TimedRun::read(&record).filter(|_| whole)));
+        lines.push((line, TimedRun::read(&record).filter(|_| whole), has_end));
     }
     Ok(lines)
 }

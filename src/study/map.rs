@@ -3,6 +3,7 @@
 
 use super::configuration::{Configuration, KEYS, Template};
 use super::pool;
+use super::rows::size;
 use crate::method::breakdown::Breakdown;
 use crate::run::stability;
 use crate::run::table::{csv, shortest};
@@ -102,6 +103,9 @@ fn limit(
     }
     let measured =
         stability::measured(&scene, *offset, predicted, STEPS, TOLERANCE).map_err(words)?;
+    if !measured.is_finite() {
+        return Err("no step up to a thousand times the predicted limit grows".to_string());
+    }
     let [predicted, measured] = [predicted, measured].map(|dt| scene.courant_number_of(dt));
     Ok(Limit { predicted, measured })
 }
@@ -153,9 +157,7 @@ impl Mapped {
         let name = row_name(keys.iter().copied(), offset);
         let combination = all.iter().find(|one| one.name() == name)?.clone();
         let limit = match *problem {
-            "" => {
-                Ok(Limit { predicted: predicted.parse().ok()?, measured: measured.parse().ok()? })
-            }
+            "" => Ok(Limit { predicted: size(predicted)?, measured: size(measured)? }),
             problem => Err(problem.to_string()),
         };
         Some((name, Mapped { combination, limit }))

@@ -58,7 +58,7 @@ impl Measured {
         };
         match measured.places().iter().all(|(_, x)| x.is_finite()) {
             true => Ok(measured),
-            false => Err("no exact solution to compare with".to_string()),
+            false => Err("nothing moves this body, or its errors are not finite".to_string()),
         }
     }
 
@@ -96,7 +96,8 @@ impl Measured {
             *x = number(name)?;
         }
         for (name, count) in measured.cost.places() {
-            *count = number(name)? as u64;
+            // Beyond 2⁵³ a number is no count any more.
+            *count = number(name).filter(|x| x.trunc() == *x && *x < 9e15)? as u64;
         }
         Some(measured)
     }

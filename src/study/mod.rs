@@ -11,3 +11,4 @@ pub mod ranking;
 pub mod rows;
 pub mod trade;
 pub mod verdict;
+pub mod work;

@@ -7,6 +7,7 @@
 use super::configuration::{Configuration, Template};
 use super::map::BASES;
 use super::pool;
+use super::rows::size;
 use crate::method::continuum::law::volume_change;
 use crate::method::exact::{Exact, Moved};
 use crate::method::measure::{Order, observed_order};
@@ -167,6 +168,9 @@ fn climb<const D: usize>(template: &Template, ladder: &Ladder) -> Result<Climbed
             None => from_exact(scene, &state)?,
             Some(reference) => between(scene, &state, reference),
         });
+        if errors.last().is_some_and(|error| error.iter().any(|x| !x.is_finite())) {
+            return Err("its relative errors are no finite numbers".to_string());
+        }
         let [first, first_step] = rungs[0];
         sizes.push(match ladder.along {
             Along::Spacing => first / refinement,
@@ -286,8 +290,10 @@ pub fn table(rows: &[Ascent]) -> Result<Vec<u8>, Fault> {
                 cells.push(list(climbed.sizes.clone()));
                 cells
                     .extend([0, 1, 2].map(|n| list(climbed.errors.iter().map(|e| e[n]).collect())));
+                // Errors of 0 have no order.
+                let cell = |x: f64| if x.is_finite() { shortest(x) } else { String::new() };
                 for Order { slope, half_width } in climbed.orders() {
-                    cells.extend([shortest(slope), shortest(half_width)]);
+                    cells.extend([slope, half_width].map(cell));
                 }
                 cells.push(String::new());
             }
@@ -305,14 +311,15 @@ pub fn table(rows: &[Ascent]) -> Result<Vec<u8>, Fault> {
 pub fn read(cells: &[&str]) -> Option<(String, Ascent)> {
     let [name, sizes, v, sigma, u, .., problem] = cells else { return None };
     let ladder = ladders().into_iter().find(|ladder| ladder.name() == *name)?;
-    let list = |text: &str| -> Option<Vec<f64>> {
-        text.split_whitespace().map(|number| number.parse().ok()).collect()
-    };
+    let list = |text: &str| -> Option<Vec<f64>> { text.split(' ').map(size).collect() };
     let climbed = match *problem {
         "" => {
-            let (v, sigma, u) = (list(v)?, list(sigma)?, list(u)?);
+            let (sizes, v, sigma, u) = (list(sizes)?, list(v)?, list(sigma)?, list(u)?);
+            if [v.len(), sigma.len(), u.len()] != [sizes.len(); 3] {
+                return None;
+            }
             let errors = v.iter().zip(&sigma).zip(&u).map(|((v, sigma), u)| [*v, *sigma, *u]);
-            Ok(Climbed { sizes: list(sizes)?, errors: errors.collect() })
+            Ok(Climbed { sizes, errors: errors.collect() })
         }
         problem => Err(problem.to_string()),
     };

@@ -3,6 +3,7 @@
 use super::configuration::{Configuration, KEYS};
 use super::log::{TimedRun, result_cells, result_columns};
 use super::measured::{Criterion, Measured};
+use super::work::work;
 use crate::run::table::{csv, shortest};
 use crate::scene::fault::Fault;
 
@@ -28,6 +29,11 @@ impl Tried {
     /// Counts the pairs of particle and node; none for a run that failed.
     pub fn pairs(&self) -> Option<u64> {
         self.measured.as_ref().ok().map(|measured| measured.cost.particle_node_pairs)
+    }
+
+    /// Gives the counted work (instructions); none for a run that failed.
+    pub fn work(&self) -> Option<f64> {
+        self.measured.as_ref().ok().map(|measured| work(&measured.cost))
     }
 
     /// Gives the relative error in one quantity; none for a run that failed.
@@ -96,11 +102,11 @@ impl Among {
     }
 }
 
-/// The price of a run is its time, which is that of one machine, or its pairs of particle and
-/// node, which are counted.
+/// The price of a run is counted, so that every run of a study gives one answer: its work, or its
+/// pairs of particle and node alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Price {
-    Time,
+    Work,
     Pairs,
 }
 
@@ -108,17 +114,18 @@ impl Price {
     /// Names the price, as in `cheapest.csv`.
     pub fn name(self) -> &'static str {
         match self {
-            Price::Time => "time",
+            Price::Work => "work",
             Price::Pairs => "pairs",
         }
     }
 
-    /// Gives the price of a run that came to its end (s or 1).
+    /// Gives the price of a run; infinite for one that failed.
     fn of(self, row: &Tried) -> f64 {
-        match self {
-            Price::Time => row.wall_time.median,
-            Price::Pairs => row.pairs().map_or(f64::INFINITY, |pairs| pairs as f64),
-        }
+        let price = match self {
+            Price::Work => row.work(),
+            Price::Pairs => row.pairs().map(|pairs| pairs as f64),
+        };
+        price.unwrap_or(f64::INFINITY)
     }
 }
 
@@ -132,11 +139,11 @@ fn judged(
     own.filter_map(move |row| Some((row, row.error(criterion)?)))
 }
 
-/// Picks those that nobody beats in both error and time, by rising time, each with its
+/// Picks those that nobody beats in both error and work, by rising work, each with its
 /// error.
 pub fn front(rows: &[Tried], criterion: Criterion) -> Vec<(&Tried, f64)> {
     let mut list: Vec<(&Tried, f64)> = judged(rows, Among::Particles, criterion).collect();
-    list.sort_by(|a, b| a.0.wall_time.median.total_cmp(&b.0.wall_time.median));
+    list.sort_by(|a, b| Price::Work.of(a.0).total_cmp(&Price::Work.of(b.0)));
     let mut least = f64::INFINITY;
     list.retain(|(_, error)| {
         let better = *error < least;
@@ -187,12 +194,20 @@ pub fn best(rows: &[Tried], among: Among, criterion: Criterion) -> Option<(&Trie
 pub fn table(rows: &[Tried]) -> Result<Vec<u8>, Fault> {
     let mut columns = KEYS.to_vec();
     columns.extend(result_columns());
-    columns.extend(["wall_time_median", "wall_time_least", "wall_time_largest", "passes", "front"]);
+    columns.extend([
+        "work",
+        "wall_time_median",
+        "wall_time_least",
+        "wall_time_largest",
+        "passes",
+        "front",
+    ]);
     let fronts = Criterion::ALL.map(|criterion| (criterion.name(), front(rows, criterion)));
     let line = |row: &Tried| {
         let mut cells = KEYS.map(|key| row.configuration.value(key).to_string()).to_vec();
         cells.extend(result_cells(&row.measured));
         let WallTime { median, least, largest } = row.wall_time;
+        cells.push(row.work().map_or(String::new(), shortest));
         cells.extend([median, least, largest].map(shortest));
         cells.push(row.passes.to_string());
         let on = |front: &[(&Tried, f64)]| front.iter().any(|(other, _)| std::ptr::eq(*other, row));
@@ -208,11 +223,11 @@ pub const LEVELS: [f64; 7] = [0.2, 0.1, 0.05, 0.03, 0.01, 0.003, 0.001];
 
 /// A verdict has these lines: whom it is asked of, and by which price.
 pub const VERDICT: [(Among, Price); 5] = [
-    (Among::Particles, Price::Time),
+    (Among::Particles, Price::Work),
     (Among::Particles, Price::Pairs),
-    (Among::Mpm, Price::Time),
-    (Among::Otm, Price::Time),
-    (Among::FiniteElements, Price::Time),
+    (Among::Mpm, Price::Work),
+    (Among::Otm, Price::Work),
+    (Among::FiniteElements, Price::Work),
 ];
 
 /// Writes `cheapest.csv`: for each criterion, level and line of the verdict the cheapest
@@ -226,21 +241,32 @@ pub fn cheapest_table(rows: &[Tried]) -> Result<Vec<u8>, Fault> {
                 line.extend([among.name(), price.name()].map(String::from));
                 line.extend(match cheapest(rows, among, price, Question { criterion, error }) {
                     Some((row, found)) => {
-                        let numbers = [found, row.wall_time.median, Price::Pairs.of(row)];
-                        let [found, time, pairs] = numbers.map(shortest);
-                        [row.configuration.to_string(), found, time, pairs]
+                        let prices = [Price::Work, Price::Pairs].map(|price| price.of(row));
+                        let numbers = [found, row.wall_time.median, prices[0], prices[1]];
+                        let [found, time, work, pairs] = numbers.map(shortest);
+                        [row.configuration.to_string(), found, time, work, pairs]
                     }
                     None => {
                         let least = best(rows, among, criterion);
                         let least = least.map_or(String::new(), |(_, error)| shortest(error));
-                        ["none".to_string(), least, String::new(), String::new()]
+                        let none = String::new;
+                        ["none".to_string(), least, none(), none(), none()]
                     }
                 });
                 lines.push(line);
             }
         }
     }
-    let columns =
-        ["quantity", "level", "among", "by", "configuration", "error", "wall_time", "pairs"];
+    let columns = [
+        "quantity",
+        "level",
+        "among",
+        "by",
+        "configuration",
+        "error",
+        "wall_time",
+        "work",
+        "pairs",
+    ];
     csv(&columns, lines.into_iter())
 }

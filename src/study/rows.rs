@@ -1,6 +1,7 @@
 //! The rows of a study run one by one, on as many machines as there are: each is a command that
 //! prints its line, and the lines are merged.
 
+use crate::run::table::not_finite;
 use crate::scene::fault::Fault;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -91,7 +92,11 @@ impl Study<'_> {
                 }
                 continue;
             }
-            let whole = is_whole(&record, &text, self.columns.len() + 1);
+            let columns: Vec<&str> = ["scene"].iter().chain(self.columns).copied().collect();
+            if let Some((column, value)) = not_finite(&columns, record.iter()) {
+                return Err(fault(path, line, &no_number(&column, &value)));
+            }
+            let (whole, _) = is_whole(&record, &text, columns.len());
             if whole && record[0] != self.scene {
                 return Err(fault(path, line, "this row belongs to another scene"));
             }
@@ -105,11 +110,22 @@ impl Study<'_> {
     }
 }
 
-/// Says whether a record of `text` has all columns and the end of its line: a last line without
-/// that may lack the last digits of its last number.
-pub fn is_whole(record: &csv::StringRecord, text: &str, columns: usize) -> bool {
+/// Says whether a record of `text` has all columns and the end of its line, and whether it has that
+/// end: a last line without it may lack the last digits of its last number.
+pub fn is_whole(record: &csv::StringRecord, text: &str, columns: usize) -> (bool, bool) {
     let from = record.position().map_or(0, |position| position.byte()) as usize;
-    record.len() == columns && text[from..].contains('\n')
+    let has_end = text[from..].contains('\n');
+    (record.len() == columns && has_end, has_end)
+}
+
+/// Says that a value that was read is no finite number.
+pub fn no_number(column: &str, value: &str) -> String {
+    format!("`{value}` of {column} is no finite number")
+}
+
+/// Reads a finite number of which a negative one makes no sense: an error, a count, a time.
+pub fn size(cell: &str) -> Option<f64> {
+    cell.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0)
 }
 
 fn fault(path: &Path, line: u64, problem: &str) -> Fault {

@@ -97,7 +97,7 @@ pub fn search(
     Ok(search)
 }
 
-/// Examines those that reach the error from the fastest on, until one is not fragile.
+/// Examines those that reach the error from the least work on, until one is not fragile.
 ///
 /// Errors: [`Fault::Scene`] for a scene that cannot be read.
 pub fn candidates(
@@ -107,7 +107,7 @@ pub fn candidates(
     jobs: usize,
 ) -> Result<Vec<Candidate>, Fault> {
     let mut candidates = Vec::new();
-    let reaching = reaching(rows, Among::Particles, Price::Time, question);
+    let reaching = reaching(rows, Among::Particles, Price::Work, question);
     for (tried, error) in reaching.into_iter().take(MOST_CANDIDATES) {
         let neighbours = neighbours(template, &tried.configuration, question.criterion, jobs)?;
         let candidate = Candidate { tried: tried.clone(), error, neighbours };

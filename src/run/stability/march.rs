@@ -67,7 +67,8 @@ fn grows_at<const D: usize>(
     Ok(false)
 }
 
-/// Finds the limit of Δt (s) by bisection on growth, to `tolerance`, from a guess.
+/// Finds the limit of Δt (s) by bisection on growth, to `tolerance`, from a guess; infinite where
+/// nothing grows up to a thousand times the guess.
 pub fn measured(
     scene: &Scene,
     offset: f64,
@@ -83,6 +84,9 @@ pub fn measured(
         (low, high) = (0.5 * low, low);
     }
     while !grows(scene, offset, high, step_count)? {
+        if high > 1e3 * guess {
+            return Ok(f64::INFINITY);
+        }
         (low, high) = (high, 2.0 * high);
     }
     while high - low > tolerance * high {

@@ -1,0 +1,141 @@
+//! The command `lme-mpm run`: what it does with a scene, and what it shows.
+
+use super::BOLD;
+use super::terminal::{self, print_report};
+use comfy_table::{CellAlignment, Table, presets};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lme_mpm::output::report::Done;
+use lme_mpm::output::summary::SummaryLine;
+use lme_mpm::output::{figure, files, report};
+use lme_mpm::run::Warning;
+use lme_mpm::scene::fault::Fault;
+use lme_mpm::scene::{DYKA, Scene, declare};
+use std::io::IsTerminal;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+
+/// What a run shows of itself.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Show {
+    Chief,
+    All,
+    Nothing,
+}
+
+pub fn built_in() -> Result<(), Fault> {
+    let scene = lme_mpm::run::parse("dyka", "dyka.toml (built in)", DYKA, &[])?;
+    terminal::warn(&run(&scene, None, Show::Chief)?, false)
+}
+
+/// Runs a scene, writes its results, and gives what they are warned of.
+pub fn run(scene: &Scene, out: Option<PathBuf>, show: Show) -> Result<Vec<Warning>, Fault> {
+    let dir = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
+    let interrupted = terminal::interrupted()?;
+    let bar = progress_bar(scene, show);
+    let tell = (scene.sizes().2 as u64 / 200).max(1);
+    let done = report::run_into(&dir, scene, &mut |step| {
+        if step == 1 {
+            bar.disable_steady_tick();
+            bar.set_style(styled("{bar:40} {pos}/{len} steps, {eta} left"));
+        }
+        if (step as u64).is_multiple_of(tell) {
+            bar.set_position(step as u64);
+        }
+        match interrupted.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    bar.finish_and_clear();
+    let Done { lines, history, warnings } = done?;
+    if show == Show::Nothing {
+        return Ok(warnings);
+    }
+    let plot = match scene.probes.first().filter(|_| std::io::stdout().is_terminal()) {
+        Some(probe) => figure::in_terminal(scene, probe, &history),
+        None => String::new(),
+    };
+    let chief: Vec<&SummaryLine> = match show {
+        Show::All => lines.iter().collect(),
+        _ => chief(scene, &lines),
+    };
+    let own = format!("{BOLD}{}{BOLD:#}\n{plot}{}\n", scene.title, table(&chief));
+    print_report(&own, "", &dir).map(|()| warnings)
+}
+
+/// Makes the bar that shows how far a run is; it begins with the prediction of the limit.
+fn progress_bar(scene: &Scene, show: Show) -> ProgressBar {
+    let target = match show {
+        Show::Nothing => ProgressDrawTarget::hidden(),
+        Show::Chief | Show::All => ProgressDrawTarget::stderr(),
+    };
+    let bar = ProgressBar::with_draw_target(Some(scene.sizes().2 as u64), target);
+    // With wide functions in 3D this takes as long as some steps.
+    bar.set_style(styled("predicting the largest stable time step ({elapsed})"));
+    bar.enable_steady_tick(std::time::Duration::from_millis(250));
+    bar
+}
+
+fn styled(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or(ProgressStyle::default_bar())
+}
+
+/// Puts a time step that is too large where it was written: file, line and key.
+pub fn placed(fault: Fault, scene: &Scene, path: &Path, sets: &[String]) -> Fault {
+    let (Fault::Unstable { .. }, Ok(text)) = (&fault, files::scene_text(path)) else {
+        return fault;
+    };
+    let Ok(declared) = declare(&scene.name, &path.display().to_string(), &text, sets) else {
+        return fault;
+    };
+    let key = match scene.time.cfl < declared.scene.time.cfl {
+        true => "time.fraction_of_critical",
+        false => "time.cfl",
+    };
+    let message = fault.to_string();
+    let (problem, remedy) = message.split_once("; set ").unwrap_or((&message, ""));
+    let mut error = declared.error(key, problem);
+    error.allowed = remedy.to_string();
+    Fault::Scene(error)
+}
+
+/// Picks the figures that matter, at most eight: the first probe's error, or its peak where no
+/// exact solution is known, the errors of all particles at the end, the energy, the part of the
+/// limit that the time step is, and what the run took.
+fn chief<'a>(scene: &Scene, lines: &'a [SummaryLine]) -> Vec<&'a SummaryLine> {
+    let of_probe = scene.probes.first().and_then(|probe| {
+        let names = ["rms_relative", "peak"].map(|what| format!("{}_{what}", probe.name));
+        names.iter().find_map(|name| lines.iter().find(|line| line.quantity == *name))
+    });
+    let names = [
+        "velocity_field_rms_relative",
+        "stress_field_rms_relative",
+        "displacement_field_rms_relative",
+        "energy_growth_largest",
+        "fraction_of_critical",
+        "particle_node_pairs",
+        "wall_time",
+    ];
+    let rest = lines.iter().filter(|line| names.contains(&line.quantity.as_str()));
+    of_probe.into_iter().chain(rest).collect()
+}
+
+/// Lays out the summary as a table for the terminal.
+fn table(lines: &[&SummaryLine]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_header(["quantity", "value", "unit"]);
+    for line in lines {
+        let value = match line.value {
+            whole if whole == whole.trunc() && whole.abs() < 1e15 => format!("{whole}"),
+            small if small.abs() < 1e-3 || small.abs() >= 1e6 => format!("{small:.4e}"),
+            x => format!("{x:.5}"),
+        };
+        let unit = if line.unit == "1" { "" } else { line.unit };
+        table.add_row([&line.quantity.replace('_', " "), &value, unit]);
+    }
+    if let Some(column) = table.column_mut(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
