@@ -42,6 +42,10 @@ pub enum Command {
         /// No progress bar and no summary
         #[arg(long, short)]
         quiet: bool,
+        /// End the run when so many seconds are over, and leave what it has recorded; such a run
+        /// may start however much work it is
+        #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+        max_time: Option<f64>,
     },
     /// List the shipped scenes, print one to start from, or the schema of scenes
     #[command(

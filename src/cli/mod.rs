@@ -1,6 +1,7 @@
 //! The commands of the program stand here: what a user types, and what the terminal shows.
 
 mod arguments;
+mod machine;
 mod studies;
 mod terminal;
 mod verdicts;
@@ -9,7 +10,6 @@ use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments};
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 use comfy_table::{CellAlignment, Table, presets};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lme_mpm::method::basis::{Basis, Support};
 use lme_mpm::output::summary::SummaryLine;
 use lme_mpm::output::{files, report};
@@ -17,12 +17,14 @@ use lme_mpm::port::check::{self, Tolerance};
 use lme_mpm::port::points::{self, Points};
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
-use lme_mpm::scene::{DYKA, SHIPPED, Scene, declare, shipped};
+use lme_mpm::scene::{Budget, DYKA, SHIPPED, Scene, declare, shipped};
 use lme_mpm::study::ranking::Question;
 use std::io::Write;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use terminal::{open, print_bytes};
+use std::time::Instant;
+use terminal::{open, predicting, print_bytes, spinner, style};
 
 const BOLD: anstyle::Style = anstyle::Style::new().bold();
 const RED: anstyle::Style =
@@ -32,8 +34,11 @@ const RED: anstyle::Style =
 pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         None => built_in(),
-        Some(Command::Run { scene, out, set, quiet }) => {
-            files::scene(&scene, &set).and_then(|read| run(&read, Some(&scene), out, quiet))
+        Some(Command::Run { scene, out, set, quiet, max_time }) => {
+            let end = max_time.map(|seconds| (Instant::now(), seconds));
+            let budget = machine::budget(max_time.is_none());
+            predicting(quiet, || files::scene(&scene, &set, &budget))
+                .and_then(|read| run(&read, Some(&scene), out, quiet, end))
         }
         Some(Command::Scenes { ask }) => scenes(ask),
         Some(Command::Completions { shell }) => completions(shell),
@@ -73,33 +78,41 @@ pub fn main() -> ExitCode {
 
 fn built_in() -> Result<(), Fault> {
     let scene = lme_mpm::run::parse("dyka", "dyka.toml (built in)", DYKA, &[])?;
-    run(&scene, None, None, false)
+    run(&scene, None, None, false, None)
 }
 
-fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, quiet: bool) -> Result<(), Fault> {
+/// Does `lme-mpm run`; `end` has its start, and the seconds that it may take from there.
+fn run(
+    scene: &Scene,
+    path: Option<&Path>,
+    out: Option<PathBuf>,
+    quiet: bool,
+    end: Option<(Instant, f64)>,
+) -> Result<(), Fault> {
     let dir = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
     if let Some(path) = path {
         let endings = [".csv", ".svg", ".vtu", ".pvd"];
         files::spare(path, &dir, |name| endings.iter().any(|ending| name.ends_with(ending)))?;
     }
     let steps = scene.sizes().2 as u64;
-    let bar = ProgressBar::with_draw_target(
-        Some(steps),
-        if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() },
-    );
-    let template =
-        |text: &str| ProgressStyle::with_template(text).unwrap_or(ProgressStyle::default_bar());
-    // With wide functions in 3D this takes as long as some steps.
-    bar.set_style(template("predicting the largest stable time step ({elapsed})"));
-    bar.enable_steady_tick(std::time::Duration::from_millis(250));
+    let bar = spinner(quiet);
+    bar.set_length(steps);
     let tell = (steps / 200).max(1);
     let lines = report::run_into(&dir, scene, &mut |step| {
         if step == 1 {
             bar.disable_steady_tick();
-            bar.set_style(template("{bar:40} {pos}/{len} steps, {eta} left"));
+            bar.set_style(style("{bar:40} {pos}/{len} steps, {eta} left"));
         }
         if (step as u64).is_multiple_of(tell) {
             bar.set_position(step as u64);
+        }
+        match end {
+            Some((start, most))
+                if start.elapsed().as_secs_f64() >= most && (step as u64) < steps =>
+            {
+                ControlFlow::Break(format!("the {most} s of --max-time are over"))
+            }
+            _ => ControlFlow::Continue(()),
         }
     });
     bar.finish_and_clear();
@@ -161,7 +174,7 @@ fn completions(shell: Shell) -> Result<(), Fault> {
 }
 
 fn exact(scene: &Path, points: &Path) -> Result<(), Fault> {
-    let scene = files::scene(scene, &[])?;
+    let scene = predicting(false, || files::scene(scene, &[], &Budget::default()))?;
     let answer = points::exact_at(&scene, &points.display().to_string(), open(points)?)?;
     print_bytes(&answer)
 }
@@ -210,9 +223,12 @@ fn trace(
     hex: bool,
     out: Option<&Path>,
 ) -> Result<(), Fault> {
-    let scene = files::scene(path, sets)?;
-    lme_mpm::port::trace::affordable(&scene, steps)?;
-    report::stable(&scene)?;
+    let scene = predicting(false, || {
+        let scene = files::scene(path, sets, &machine::budget(true))?;
+        lme_mpm::port::trace::affordable(&scene, steps)?;
+        report::stable(&scene)?;
+        Ok::<_, Fault>(scene)
+    })?;
     let place = match out {
         Some(out) if out != Path::new("-") => Some(place_beside(path, out)?),
         _ => None,

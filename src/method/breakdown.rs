@@ -83,6 +83,8 @@ pub enum Breakdown {
         shown(*part)
     )]
     Gained { particle: usize, share: f64, part: f64 },
+    #[error("the run was ended from outside: {why}")]
+    Ended { why: String },
 }
 
 /// Writes a fraction with three digits, rounded down.

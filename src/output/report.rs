@@ -11,6 +11,7 @@ use crate::run::table::{csv, shortest};
 use crate::run::{Stopped, run_knowing};
 use crate::scene::Scene;
 use crate::scene::fault::Fault;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
@@ -57,11 +58,11 @@ pub fn stable(scene: &Scene) -> Result<Option<Critical>, Fault> {
 /// `history.failed.csv`. Either way the other kind of an earlier run goes.
 ///
 /// Errors: [`Fault::Unstable`] for a Δt above the predicted limit, before anything
-/// is written; [`Fault::Write`]; [`Fault::Run`] when the run breaks down.
+/// is written; [`Fault::Write`]; [`Fault::Run`] when the run breaks down, or `progress` ends it.
 pub fn run_into(
     dir: &Path,
     scene: &Scene,
-    progress: &mut dyn FnMut(usize),
+    progress: &mut dyn FnMut(usize) -> ControlFlow<String>,
 ) -> Result<Vec<SummaryLine>, Fault> {
     let limit = stable(scene)?;
     prepare(dir)?;
@@ -106,7 +107,8 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Result<Fault, Fault> {
         Breakdown::ReachesBeyond { .. }
         | Breakdown::NoBasis { .. }
         | Breakdown::SingularMass { .. }
-        | Breakdown::NoMass { .. } => String::new(),
+        | Breakdown::NoMass { .. }
+        | Breakdown::Ended { .. } => String::new(),
         Breakdown::BeyondLimit { .. } | Breakdown::Gained { .. } => {
             "give the time step as a part of the limit with \
              time.fraction_of_critical, or a smaller time.cfl; "

@@ -8,16 +8,17 @@ mod recorder;
 pub mod stability;
 pub mod table;
 
-pub use open::parse;
+pub use open::{parse, parse_within};
 pub use outcome::{Frame, Outcome, Stopped};
 
-use crate::method::breakdown::{BrokenDown, Moment};
+use crate::method::breakdown::{Breakdown, BrokenDown, Moment};
 use crate::method::cost::Cost;
 use crate::method::time;
 use crate::scene::Scene;
 use crate::setup;
 use recorder::Recorder;
 use stability::{Critical, Watch};
+use std::ops::ControlFlow;
 
 /// Runs a scene to its end; `progress` hears the number of every finished step.
 ///
@@ -26,17 +27,20 @@ use stability::{Critical, Watch};
 ///
 /// Errors: [`Stopped`] when the run breaks down.
 pub fn run(scene: &Scene, progress: &mut dyn FnMut(usize)) -> Result<Outcome, Box<Stopped>> {
-    run_knowing(scene, None, progress)
+    run_knowing(scene, None, &mut |step| {
+        progress(step);
+        ControlFlow::Continue(())
+    })
 }
 
 /// Runs a scene of which the limit of Δt may be known, so that the watch need not predict it
-/// again.
+/// again; `progress` may break with the reason to end it there.
 ///
-/// Errors: [`Stopped`] when the run breaks down.
+/// Errors: [`Stopped`] when the run breaks down or is ended.
 pub fn run_knowing(
     scene: &Scene,
     limit: Option<Critical>,
-    progress: &mut dyn FnMut(usize),
+    progress: &mut dyn FnMut(usize) -> ControlFlow<String>,
 ) -> Result<Outcome, Box<Stopped>> {
     match scene.dimension() {
         1 => run_in::<1>(scene, limit, progress),
@@ -48,7 +52,7 @@ pub fn run_knowing(
 fn run_in<const D: usize>(
     scene: &Scene,
     limit: Option<Critical>,
-    progress: &mut dyn FnMut(usize),
+    progress: &mut dyn FnMut(usize) -> ControlFlow<String>,
 ) -> Result<Outcome, Box<Stopped>> {
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
@@ -67,7 +71,9 @@ fn run_in<const D: usize>(
                     None => Ok(()),
                 })
                 .map_err(|what| what.at(moment))?;
-            progress(step);
+            if let ControlFlow::Break(why) = progress(step) {
+                return Err(Breakdown::Ended { why }.at(moment));
+            }
         }
         Ok(())
     };
