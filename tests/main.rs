@@ -38,6 +38,7 @@ mod rows;
 mod runs;
 mod scenes;
 mod search;
+mod shape;
 mod sides;
 mod stability;
 mod steps;

@@ -3,6 +3,7 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use lme_mpm::method::basis::Support;
 use lme_mpm::scene::SHIPPED;
 use lme_mpm::study::measured::Criterion;
 use std::path::PathBuf;
@@ -74,8 +75,10 @@ pub enum Command {
     ///
     /// Reads two CSV files with the columns x[,y[,z]] (m) and prints CSV
     /// point,node,N,dN_dx[,dN_dy[,dN_dz]], points and nodes counted from 0.
-    /// Nodes outside the support are left out. lme takes any set of nodes, the
-    /// others a regular grid.
+    /// Nodes outside the support are left out. On a full grid with the spacing H these
+    /// are the functions of a run with MPM; a point always sees the corners of its cell. lme takes
+    /// other nodes, too, and gives what a run with OTM uses: a point sees the nodes within
+    /// R = H √(−ln TOL / G), at least H, and where they do not enclose it R is widened.
     #[command(
         after_help = "Example:\n  lme-mpm shape --basis lme --spacing 0.1 --gamma 0.8 --nodes nodes.csv --points points.csv"
     )]
@@ -284,6 +287,10 @@ pub struct ShapeArguments {
     /// lme leaves out nodes with exp(−γ|ξ|²) below it, 1e-6 without it; 0 leaves out none
     #[arg(long, value_name = "TOL", value_parser = fraction, allow_negative_numbers = true)]
     pub cutoff: Option<f64>,
+    /// The cut-off of lme on a full grid leaves a box of nodes or a ball, as basis.support of a
+    /// scene; box without it
+    #[arg(long)]
+    pub support: Option<SupportName>,
     /// Half the length of a particle of ugimp (m), at most H/2
     #[arg(long, value_name = "LP", required_if_eq("basis", "ugimp"), value_parser = positive, allow_negative_numbers = true)]
     pub half_length: Option<f64>,
@@ -301,6 +308,22 @@ pub enum BasisName {
     Ugimp,
     Lme,
     Bspline,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SupportName {
+    Box,
+    Ball,
+}
+
+impl SupportName {
+    /// Gives what it names.
+    pub fn support(self) -> Support {
+        match self {
+            SupportName::Box => Support::Box,
+            SupportName::Ball => Support::Ball,
+        }
+    }
 }
 
 /// Reads the name of the quantity whose error is asked for.

@@ -6,7 +6,7 @@ mod studies;
 mod terminal;
 mod verdicts;
 
-use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments};
+use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments, SupportName};
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 use comfy_table::{CellAlignment, Table, presets};
@@ -185,6 +185,7 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
     for (argument, foreign, allowed) in [
         ("--gamma", arguments.gamma.is_some() && !lme, "with --basis lme only"),
         ("--cutoff", arguments.cutoff.is_some() && !lme, "with --basis lme only"),
+        ("--support", arguments.support.is_some() && !lme, "with --basis lme only"),
         ("--half-length", arguments.half_length.is_some() && !ugimp, "with --basis ugimp only"),
     ] {
         if foreign {
@@ -207,13 +208,14 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
         BasisName::Lme => Basis::Lme {
             gamma: arguments.gamma.unwrap_or(1.0),
             cutoff: arguments.cutoff.unwrap_or(1e-6),
-            support: Support::Ball,
+            support: arguments.support.map_or(Support::Box, SupportName::support),
         },
     };
     let read =
         |path: &Path| Points::read(&path.display().to_string(), open(path)?, &points::COORDINATES);
     let (nodes, points) = (read(&arguments.nodes)?, read(&arguments.points)?);
-    print_bytes(&points::shape_at(&basis, spacing, &nodes, &points)?)
+    let needs_grid = arguments.support == Some(SupportName::Box);
+    print_bytes(&points::shape_at(&basis, needs_grid, spacing, &nodes, &points)?)
 }
 
 fn trace(

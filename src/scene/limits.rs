@@ -13,7 +13,7 @@ const PER_PARTICLE_STEP: f64 = 300.0;
 const PER_ENTRY: f64 = 32.0;
 
 /// A budget is what a run may take. This one, without a look at the machine, is 16 GiB and 1e11
-/// particle-steps, which take about a day.
+/// particle-steps, which take some hours with the linear basis and a day with wide functions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Memory (bytes).
@@ -78,7 +78,7 @@ pub fn affordable(scene: &Scene, budget: &Budget) -> Result<(), Excess> {
     let recorded = frames + rows * 60.0 * columns;
     if arrays + factors + recorded > budget.memory {
         let (gb, what) = (recorded / 1e9, if scene.vtk { "frames and history" } else { "history" });
-        let problem = format!("the {what} of {steps:e} steps need {gb:e} GB of memory");
+        let problem = format!("{what} of {steps:e} steps ask for {gb:.1} GB of memory");
         let left = (budget.memory - arrays - factors) / 1e9;
         let allowed = format!("{what} of at most {left:.1} GB, which is there; see output.every");
         return too_much("time.end", problem, allowed);
