@@ -14,6 +14,7 @@ mod exact;
 mod extremes;
 mod extremes_of_scenes;
 mod finite;
+mod fuzz;
 mod house;
 mod hull;
 mod integrators;

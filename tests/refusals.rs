@@ -85,7 +85,7 @@ fn bad_ranges() {
         ("lists", "cells = 40", "cells = [40, 4]", &["grid.cells", "1 axis"]),
         ("memory", "cells = 40", "cells = 1000000000", &["grid.cells", "GB of memory"]),
         ("history", "cfl = 0.5", "cfl = 1e-6", &["time.end", "GB of memory"]),
-        ("work", "cfl = 0.5", "cfl = 1e-8", &["time.end", "particle-steps", "--max-time"]),
+        ("work", "cfl = 0.5", "cfl = 1e-8", &["particle-steps", "--max-time"]),
         ("name", "\"velocity_end\"", "\"a/b\"", &["probe[0].name", "a/b"]),
         ("twice", "\"velocity_end\"", "\"stress_three_quarter\"", &["probe[1].name", "taken"]),
         ("column", "\"velocity_end\"", "\"momentum\"", &["probe[0].name", "taken"]),

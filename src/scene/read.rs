@@ -72,6 +72,7 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         otm(values)?;
         grid.beyond.fill([0, 0]);
     }
+    crossed(values, &body, &grid)?;
     let basis = basis(values, &grid)?;
     filled(values, &body, &grid)?;
     let motion = motion(values, method, &body, &grid, &boundary)?;
@@ -157,6 +158,22 @@ fn balls(values: &Values, body: &Body) -> Result<Vec<Ball>, Box<SceneError>> {
         balls.push(Ball { centre: from_corner, radius });
     }
     Ok(balls)
+}
+
+/// Refuses cells so large or small that the square of the time in which a wave crosses one, of
+/// which the limit of Δt is made, is no ordinary number.
+fn crossed(values: &Values, body: &Body, grid: &GridSpec) -> Result<(), Box<SceneError>> {
+    let c = wave_speed(body);
+    for d in 0..values.dimension() {
+        let time = body.length[d] / grid.cells[d] as f64 / c;
+        if !(1e-150..=1e150).contains(&time) {
+            let problem = format!("a wave takes {time:e} s through a cell of grid.cells");
+            let mut error = values.error("body.length", problem);
+            error.allowed = "lengths that a wave takes from 1e-150 s to 1e150 s for".into();
+            return Err(error);
+        }
+    }
+    Ok(())
 }
 
 /// Refuses a ball that holds no particle.
