@@ -19,7 +19,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
 /// As many cases are tried in every test run.
-const CASES: u64 = 1200;
+const CASES: u64 = 3000;
 
 /// A case ends after as many steps, and has as many pairs at most.
 const STEPS: usize = 12;

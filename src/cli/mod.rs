@@ -107,11 +107,7 @@ fn run(
             bar.set_position(step as u64);
         }
         match end {
-            Some((start, most))
-                if start.elapsed().as_secs_f64() >= most && (step as u64) < steps =>
-            {
-                ControlFlow::Break(format!("the {most} s of --max-time are over"))
-            }
+            Some(end) if (step as u64) < steps => in_time(end),
             _ => ControlFlow::Continue(()),
         }
     });
@@ -127,6 +123,14 @@ fn run(
         print_bytes(text.as_bytes())?;
     }
     Ok(())
+}
+
+/// Breaks when the seconds that a run may take from its start are over.
+fn in_time((start, most): (Instant, f64)) -> ControlFlow<String> {
+    match start.elapsed().as_secs_f64() < most {
+        true => ControlFlow::Continue(()),
+        false => ControlFlow::Break(format!("the {most} s of --max-time are over")),
+    }
 }
 
 /// Lays out the summary as a table for the terminal.
