@@ -289,8 +289,8 @@ pub struct ShapeArguments {
     pub cutoff: Option<f64>,
     /// The cut-off of lme on a full grid leaves a box of nodes or a ball, as basis.support of a
     /// scene; box without it
-    #[arg(long)]
-    pub support: Option<SupportName>,
+    #[arg(long, value_parser = support())]
+    pub support: Option<Support>,
     /// Half the length of a particle of ugimp (m), at most H/2
     #[arg(long, value_name = "LP", required_if_eq("basis", "ugimp"), value_parser = positive, allow_negative_numbers = true)]
     pub half_length: Option<f64>,
@@ -310,20 +310,10 @@ pub enum BasisName {
     Bspline,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum SupportName {
-    Box,
-    Ball,
-}
-
-impl SupportName {
-    /// Gives what it names.
-    pub fn support(self) -> Support {
-        match self {
-            SupportName::Box => Support::Box,
-            SupportName::Ball => Support::Ball,
-        }
-    }
+/// Reads the name of a support.
+fn support() -> impl TypedValueParser<Value = Support> {
+    PossibleValuesParser::new(["box", "ball"])
+        .map(|name| if name == "box" { Support::Box } else { Support::Ball })
 }
 
 /// Reads the name of the quantity whose error is asked for.

@@ -6,7 +6,7 @@ mod studies;
 mod terminal;
 mod verdicts;
 
-use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments, SupportName};
+use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments};
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 use comfy_table::{CellAlignment, Table, presets};
@@ -212,13 +212,13 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
         BasisName::Lme => Basis::Lme {
             gamma: arguments.gamma.unwrap_or(1.0),
             cutoff: arguments.cutoff.unwrap_or(1e-6),
-            support: arguments.support.map_or(Support::Box, SupportName::support),
+            support: arguments.support.unwrap_or(Support::Box),
         },
     };
     let read =
         |path: &Path| Points::read(&path.display().to_string(), open(path)?, &points::COORDINATES);
     let (nodes, points) = (read(&arguments.nodes)?, read(&arguments.points)?);
-    let needs_grid = arguments.support == Some(SupportName::Box);
+    let needs_grid = arguments.support == Some(Support::Box);
     print_bytes(&points::shape_at(&basis, needs_grid, spacing, &nodes, &points)?)
 }
 

@@ -41,7 +41,6 @@ pub struct Excess {
 /// Errors: [`Excess`] with the key that asks for too much.
 pub fn affordable(scene: &Scene, budget: &Budget) -> Result<(), Excess> {
     let (particles, _, steps) = scene.sizes();
-    let rows = steps / scene.every as f64;
     let too_much = |key, problem, allowed| Err(Excess { key, problem, allowed });
     let limit = budget.memory / 1e9;
     let (arrays, factors) = (arrays(scene), factors(scene));
@@ -71,11 +70,7 @@ pub fn affordable(scene: &Scene, budget: &Budget) -> Result<(), Excess> {
         };
         return too_much("time.end", problem, allowed);
     }
-    // A row of the table of particles, and its share of a file.
-    let frames = if scene.vtk { rows * particles * 8.0 * 50.0 } else { 0.0 };
-    // A number in the table, as text in CSV, and as a point of a picture.
-    let columns = 4.0 + scene.dimension() as f64 + 2.0 * scene.probes.len() as f64;
-    let recorded = frames + rows * 60.0 * columns;
+    let recorded = recorded(scene);
     if arrays + factors + recorded > budget.memory {
         let (gb, what) = (recorded / 1e9, if scene.vtk { "frames and history" } else { "history" });
         let problem = format!("{what} of {steps:e} steps ask for {gb:.1} GB of memory");
@@ -106,6 +101,17 @@ fn factors(scene: &Scene) -> f64 {
     let (systems, entries) = (scene.mass_systems(), scene.mass_entries());
     let own = if systems > 0.0 { 24.0 } else { 0.0 };
     states(scene) * (own * entries + systems * (PER_ENTRY * scene.factor_entries() + 8.0 * entries))
+}
+
+/// Estimates the memory for frames and history (bytes).
+fn recorded(scene: &Scene) -> f64 {
+    let (particles, _, steps) = scene.sizes();
+    let rows = steps / scene.every as f64;
+    // A row of the table of particles, and its share of a file.
+    let frames = if scene.vtk { rows * particles * 8.0 * 50.0 } else { 0.0 };
+    // A number in the table, as text in CSV, and as a point of a picture.
+    let columns = 4.0 + scene.dimension() as f64 + 2.0 * scene.probes.len() as f64;
+    frames + rows * 60.0 * columns
 }
 
 /// Estimates the work of a run (particle-steps).
