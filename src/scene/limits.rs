@@ -40,7 +40,7 @@ pub struct Excess {
 ///
 /// Errors: [`Excess`] with the key that asks for too much.
 pub fn affordable(scene: &Scene, budget: &Budget) -> Result<(), Excess> {
-    let (particles, _, steps) = scene.sizes();
+    let steps = scene.step_count();
     let too_much = |key, problem, allowed| Err(Excess { key, problem, allowed });
     let limit = budget.memory / 1e9;
     let (arrays, factors) = (arrays(scene), factors(scene));
@@ -60,13 +60,16 @@ pub fn affordable(scene: &Scene, budget: &Budget) -> Result<(), Excess> {
     let work = work(scene);
     if steps > MOST_STEPS || work > budget.work {
         let problem = format!(
-            "with time.cfl and grid.cells it asks for {steps:e} steps of {particles:e} particles, \
-             the work of {work:.1e} particle-steps"
+            "with time.cfl and grid.cells it asks for {steps:e} steps, the work of {work:.1e} \
+             particle-steps"
         );
-        let most = format!("at most {:e} particle-steps", budget.work);
-        let allowed = match budget.work.is_finite() {
-            true => format!("{most}; with `--max-time SECONDS` a run may start that needs more"),
-            false => format!("at most {MOST_STEPS:e} steps"),
+        let allowed = match steps > MOST_STEPS {
+            true => format!("at most {MOST_STEPS:e} steps"),
+            false => format!(
+                "at most {:e} particle-steps; with `--max-time SECONDS` a run may start that needs \
+                 more",
+                budget.work
+            ),
         };
         return too_much("time.end", problem, allowed);
     }
