@@ -166,7 +166,7 @@ fn shape_prints_values() {
     // Far on the side of finite elements local max-ent is the linear basis.
     assert_eq!(
         shape(&["lme", "--gamma", "800", "--cutoff", "0"]).lines().nth(1),
-        Some("0,2,0.25,4")
+        Some("0,3,0.75,-4")
     );
     assert_eq!(shape(&["lme", "--gamma", "0.8"]).lines().count(), 1 + 5 + 5);
 }

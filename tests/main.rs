@@ -3,6 +3,7 @@
 mod analytical;
 mod basis;
 mod book;
+mod budget;
 #[path = "bench/cases.rs"]
 mod cases;
 mod cli;
@@ -13,6 +14,7 @@ mod exact;
 mod extremes;
 mod extremes_of_scenes;
 mod finite;
+mod fuzz;
 mod gate;
 mod guards;
 mod house;
@@ -42,6 +44,7 @@ mod rows;
 mod runs;
 mod scenes;
 mod search;
+mod shape;
 mod sides;
 mod stability;
 mod steps;

@@ -84,7 +84,8 @@ fn bad_ranges() {
         ("axes", "length = 0.1333", "length = [1, 1, 1, 1]", &["body.length", "1 to 3"]),
         ("lists", "cells = 40", "cells = [40, 4]", &["grid.cells", "1 axis"]),
         ("memory", "cells = 40", "cells = 1000000000", &["grid.cells", "GB of memory"]),
-        ("history", "cfl = 0.5", "cfl = 1e-8", &["time.end", "GB of memory"]),
+        ("history", "cfl = 0.5", "cfl = 1e-6", &["time.end", "GB of memory"]),
+        ("work", "cfl = 0.5", "cfl = 1e-8", &["particle-steps", "--max-time"]),
         ("name", "\"velocity_end\"", "\"a/b\"", &["probe[0].name", "a/b"]),
         ("twice", "\"velocity_end\"", "\"stress_three_quarter\"", &["probe[1].name", "taken"]),
         ("column", "\"velocity_end\"", "\"momentum\"", &["probe[0].name", "taken"]),
@@ -363,7 +364,8 @@ fn bad_shape_input() {
     let lme = ["lme", "--gamma", "1"];
     let cases = [
         (shape(&["linear"], "line.csv", "x\n0.5\n"), &["-, line 2", "point 0", "inside"][..]),
-        (shape(&lme, "line.csv", "x\n0.1\n0.5\n"), &["-, line 3", "point 1", "convex hull"]),
+        (shape(&lme, "line.csv", "x\n0.1\n0.5\n"), &["-, line 3", "point 1", "outside the grid"]),
+        (shape(&lme, "gap.csv", "x\n0.5\n"), &["-, line 2", "point 0", "convex hull"]),
         (shape(&["linear"], "gap.csv", "x\n0\n"), &["gap.csv", "do not fill a box"]),
         (shape(&lme, "plane.csv", "x,y\n0.5,0.5\n"), &["-, line 2", "convex hull"]),
         (shape(&lme, "plane.csv", "x\n0.5\n"), &["1 coordinates", "2, as the nodes"]),
@@ -371,6 +373,11 @@ fn bad_shape_input() {
         (shape(&lme, "line.csv", "x,y,z,w\n"), &["-, line 1", "x or x,y or x,y,z"]),
         (shape(&["lme"], "line.csv", "x\n0\n"), &["--gamma"]),
         (shape(&["linear", "--gamma", "1"], "line.csv", "x\n0\n"), &["--gamma", "lme only"]),
+        (shape(&["linear", "--support", "ball"], "line.csv", "x\n0\n"), &["--support", "lme only"]),
+        (
+            shape(&["lme", "--gamma", "1", "--support", "box"], "gap.csv", "x\n0\n"),
+            &["gap.csv", "do not fill a box", "where --support is not box"],
+        ),
         (shape(&["bspline", "--cutoff", "0"], "line.csv", "x\n0\n"), &["--cutoff", "lme only"]),
         (
             shape(&["lme", "--gamma", "1", "--half-length", "0.02"], "line.csv", "x\n0\n"),

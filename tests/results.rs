@@ -321,7 +321,7 @@ fn results_go_where_bytes_say() {
 fn results_of_a_run_that_is_broken_off() {
     let mut listener = |step| match step < 7 {
         true => ControlFlow::Continue(()),
-        false => ControlFlow::Break(()),
+        false => ControlFlow::Break(Breakdown::Interrupted),
     };
     let stopped = run::run_knowing(&dyka(&[]), None, &mut listener).unwrap_err();
     assert_eq!(stopped.broken.breakdown, Breakdown::Interrupted);
@@ -329,7 +329,7 @@ fn results_of_a_run_that_is_broken_off() {
     // After its last step it is complete.
     let mut listener = |step| match step < 320 {
         true => ControlFlow::Continue(()),
-        false => ControlFlow::Break(()),
+        false => ControlFlow::Break(Breakdown::Interrupted),
     };
     assert!(run::run_knowing(&dyka(&[]), None, &mut listener).is_ok());
 }

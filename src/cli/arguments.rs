@@ -3,6 +3,7 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use lme_mpm::method::basis::Support;
 use lme_mpm::scene::SHIPPED;
 use lme_mpm::study::measured::Criterion;
 use std::path::PathBuf;
@@ -52,6 +53,10 @@ pub enum Command {
         /// Show the whole summary, not the eight figures that matter most
         #[arg(long)]
         all: bool,
+        /// End the run when so many seconds are over, and leave what it has recorded; such a run
+        /// may start however much work it is
+        #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+        max_time: Option<f64>,
     },
     /// List the shipped scenes, print one to start from, or the schema of scenes
     #[command(
@@ -80,8 +85,10 @@ pub enum Command {
     ///
     /// Reads two CSV files with the columns x[,y[,z]] (m) and prints CSV
     /// point,node,N,dN_dx[,dN_dy[,dN_dz]], points and nodes counted from 0.
-    /// Nodes outside the support are left out. lme takes any set of nodes, the
-    /// others a regular grid.
+    /// Nodes outside the support are left out. On a full grid with the spacing H these
+    /// are the functions of a run with MPM; a point always sees the corners of its cell. lme takes
+    /// other nodes, too, and gives what a run with OTM uses: a point sees the nodes within
+    /// R = H √(−ln TOL / G), at least H, and where they do not enclose it R is widened.
     #[command(
         after_help = "Example:\n  lme-mpm shape --basis lme --spacing 0.1 --gamma 0.8 --nodes nodes.csv --points points.csv"
     )]
@@ -290,6 +297,10 @@ pub struct ShapeArguments {
     /// lme leaves out nodes with exp(−γ|ξ|²) below it, 1e-6 without it; 0 leaves out none
     #[arg(long, value_name = "TOL", value_parser = fraction, allow_negative_numbers = true)]
     pub cutoff: Option<f64>,
+    /// The cut-off of lme on a full grid leaves a box of nodes or a ball, as basis.support of a
+    /// scene; box without it
+    #[arg(long, value_parser = support())]
+    pub support: Option<Support>,
     /// Half the length of a particle of ugimp (m), at most H/2
     #[arg(long, value_name = "LP", required_if_eq("basis", "ugimp"), value_parser = positive, allow_negative_numbers = true)]
     pub half_length: Option<f64>,
@@ -307,6 +318,12 @@ pub enum BasisName {
     Ugimp,
     Lme,
     Bspline,
+}
+
+/// Reads the name of a support.
+fn support() -> impl TypedValueParser<Value = Support> {
+    PossibleValuesParser::new(["box", "ball"])
+        .map(|name| if name == "box" { Support::Box } else { Support::Ball })
 }
 
 /// Reads the name of the quantity whose error is asked for.

@@ -1,6 +1,7 @@
 //! The commands of the program stand here: what a user types, and what the terminal shows.
 
 mod arguments;
+mod machine;
 mod run;
 mod studies;
 mod terminal;
@@ -15,12 +16,13 @@ use lme_mpm::port::check::{self, Tolerance};
 use lme_mpm::port::points::{self, Points};
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
-use lme_mpm::scene::{SHIPPED, declare, shipped};
+use lme_mpm::scene::{Budget, SHIPPED, declare, shipped};
 use lme_mpm::study::ranking::Question;
-use run::{Show, built_in, placed, run};
+use run::{Asked, Show, built_in, placed, run};
 use std::path::Path;
 use std::process::ExitCode;
-use terminal::{open, print_bytes};
+use std::time::Instant;
+use terminal::{open, predicting, print_bytes};
 
 const BOLD: anstyle::Style = anstyle::Style::new().bold();
 /// Does the command that was typed, and tells what went wrong.
@@ -41,12 +43,14 @@ pub fn main() -> ExitCode {
 fn dispatch(command: Option<Command>) -> Result<(), Fault> {
     match command {
         None => built_in(),
-        Some(Command::Run { scene, out, set, quiet, strict, all }) => {
+        Some(Command::Run { scene, out, set, quiet, strict, all, max_time }) => {
+            let end = max_time.map(|seconds| (Instant::now(), seconds));
             let show = [Show::Chief, Show::All, Show::Nothing];
             let show = show[if quiet { 2 } else { usize::from(all) }];
-            let read = files::scene(&scene, &set)?;
-            let warnings =
-                run(&read, out, show).map_err(|fault| placed(fault, &read, &scene, &set))?;
+            let budget = machine::budget(max_time.is_none());
+            let read = predicting(quiet, || files::scene(&scene, &set, &budget))?;
+            let warnings = run(&read, Asked { out, show, end })
+                .map_err(|fault| placed(fault, &read, &scene, &set))?;
             terminal::warn(&warnings, strict)
         }
         Some(Command::Scenes { ask }) => scenes(ask),
@@ -99,7 +103,7 @@ fn completions(shell: Shell) -> Result<(), Fault> {
 }
 
 fn exact(scene: &Path, points: &Path) -> Result<(), Fault> {
-    let scene = files::scene(scene, &[])?;
+    let scene = predicting(false, || files::scene(scene, &[], &Budget::default()))?;
     let answer = points::exact_at(&scene, &points.display().to_string(), open(points)?)?;
     print_bytes(&answer)
 }
@@ -110,6 +114,7 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
     for (argument, foreign, allowed) in [
         ("--gamma", arguments.gamma.is_some() && !lme, "with --basis lme only"),
         ("--cutoff", arguments.cutoff.is_some() && !lme, "with --basis lme only"),
+        ("--support", arguments.support.is_some() && !lme, "with --basis lme only"),
         ("--half-length", arguments.half_length.is_some() && !ugimp, "with --basis ugimp only"),
     ] {
         if foreign {
@@ -132,13 +137,14 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
         BasisName::Lme => Basis::Lme {
             gamma: arguments.gamma.unwrap_or(1.0),
             cutoff: arguments.cutoff.unwrap_or(1e-6),
-            support: Support::Ball,
+            support: arguments.support.unwrap_or(Support::Box),
         },
     };
     let read =
         |path: &Path| Points::read(&path.display().to_string(), open(path)?, &points::COORDINATES);
     let (nodes, points) = (read(&arguments.nodes)?, read(&arguments.points)?);
-    print_bytes(&points::shape_at(&basis, spacing, &nodes, &points)?)
+    let needs_grid = arguments.support == Some(Support::Box);
+    print_bytes(&points::shape_at(&basis, needs_grid, spacing, &nodes, &points)?)
 }
 
 fn trace(
@@ -148,9 +154,12 @@ fn trace(
     hex: bool,
     out: Option<&Path>,
 ) -> Result<(), Fault> {
-    let scene = files::scene(path, sets)?;
-    lme_mpm::port::trace::affordable(&scene, steps)?;
-    report::stable(&scene).map_err(|fault| placed(fault, &scene, path, sets))?;
+    let scene = predicting(false, || {
+        let scene = files::scene(path, sets, &machine::budget(true))?;
+        lme_mpm::port::trace::affordable(&scene, steps)?;
+        report::stable(&scene).map_err(|fault| placed(fault, &scene, path, sets))?;
+        Ok::<_, Fault>(scene)
+    })?;
     let place = out.filter(|out| *out != Path::new("-"));
     if let Some(out) = place {
         writable(path, out)?;

@@ -1,9 +1,9 @@
 //! The command `lme-mpm run`: what it does with a scene, and what it shows.
 
 use super::BOLD;
-use super::terminal::{self, print_report};
+use super::terminal::{self, print_report, spinner, style};
 use comfy_table::{CellAlignment, Table, presets};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::output::report::Done;
 use lme_mpm::output::summary::SummaryLine;
 use lme_mpm::output::{figure, files, report};
@@ -14,6 +14,7 @@ use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
+use std::time::Instant;
 
 /// What a run shows of itself.
 #[derive(Clone, Copy, PartialEq)]
@@ -25,26 +26,41 @@ pub enum Show {
 
 pub fn built_in() -> Result<(), Fault> {
     let scene = lme_mpm::run::parse("dyka", "dyka.toml (built in)", DYKA, &[])?;
-    terminal::warn(&run(&scene, None, Show::Chief)?, false)
+    terminal::warn(&run(&scene, Asked { out: None, show: Show::Chief, end: None })?, false)
+}
+
+/// This is what a run is asked for besides its scene.
+pub struct Asked {
+    /// Where to write; out/<scene name> without it.
+    pub out: Option<PathBuf>,
+    pub show: Show,
+    /// When it began, and the seconds that it may take from there.
+    pub end: Option<(Instant, f64)>,
 }
 
 /// Runs a scene, writes its results, and gives what they are warned of.
-pub fn run(scene: &Scene, out: Option<PathBuf>, show: Show) -> Result<Vec<Warning>, Fault> {
+pub fn run(scene: &Scene, asked: Asked) -> Result<Vec<Warning>, Fault> {
+    let Asked { out, show, end } = asked;
     let dir = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
     let interrupted = terminal::interrupted()?;
-    let bar = progress_bar(scene, show);
-    let tell = (scene.sizes().2 as u64 / 200).max(1);
+    let steps = scene.sizes().2 as u64;
+    let bar = spinner(show == Show::Nothing);
+    bar.set_length(steps);
+    let tell = (steps / 200).max(1);
     let done = report::run_into(&dir, scene, &mut |step| {
         if step == 1 {
             bar.disable_steady_tick();
-            bar.set_style(styled("{bar:40} {pos}/{len} steps, {eta} left"));
+            bar.set_style(style("{bar:40} {pos}/{len} steps, {eta} left"));
         }
         if (step as u64).is_multiple_of(tell) {
             bar.set_position(step as u64);
         }
-        match interrupted.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        match end {
+            _ if interrupted.load(Ordering::Relaxed) => ControlFlow::Break(Breakdown::Interrupted),
+            Some((start, seconds)) if start.elapsed().as_secs_f64() >= seconds => {
+                ControlFlow::Break(Breakdown::OutOfTime { seconds })
+            }
+            _ => ControlFlow::Continue(()),
         }
     });
     bar.finish_and_clear();
@@ -62,23 +78,6 @@ pub fn run(scene: &Scene, out: Option<PathBuf>, show: Show) -> Result<Vec<Warnin
     };
     let own = format!("{BOLD}{}{BOLD:#}\n{plot}{}\n", scene.title, table(&chief));
     print_report(&own, "", &dir).map(|()| warnings)
-}
-
-/// Makes the bar that shows how far a run is; it begins with the prediction of the limit.
-fn progress_bar(scene: &Scene, show: Show) -> ProgressBar {
-    let target = match show {
-        Show::Nothing => ProgressDrawTarget::hidden(),
-        Show::Chief | Show::All => ProgressDrawTarget::stderr(),
-    };
-    let bar = ProgressBar::with_draw_target(Some(scene.sizes().2 as u64), target);
-    // With wide functions in 3D this takes as long as some steps.
-    bar.set_style(styled("predicting the largest stable time step ({elapsed})"));
-    bar.enable_steady_tick(std::time::Duration::from_millis(250));
-    bar
-}
-
-fn styled(template: &str) -> ProgressStyle {
-    ProgressStyle::with_template(template).unwrap_or(ProgressStyle::default_bar())
 }
 
 /// Puts a time step that is too large where it was written: file, line and key.

@@ -1,8 +1,9 @@
 //! These commands run studies.
 
 use super::arguments::RowArguments;
-use super::terminal::{print_bytes, print_report, quoted};
-use indicatif::{ProgressBar, ProgressStyle};
+use super::machine;
+use super::terminal::{predicting, print_bytes, print_report, quoted, style};
+use indicatif::ProgressBar;
 use lme_mpm::output::figure;
 use lme_mpm::output::files::{self, prepare, write_all};
 use lme_mpm::scene::DYKA;
@@ -15,21 +16,23 @@ use lme_mpm::study::orders::{self, Along, Ladder, Volumes};
 use lme_mpm::study::rows::{self, Study};
 use std::path::{Path, PathBuf};
 
-/// Shows a bar for `length` pieces of work, on stderr.
+/// Shows a bar for `length` pieces of work, on stderr, and from the start for how long it has
+/// been at it: the first piece may take a while.
 pub fn progress(length: usize) -> ProgressBar {
     let bar = ProgressBar::new(length as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len}, {eta} left") {
-        bar.set_style(style);
-    }
+    bar.set_style(style("{bar:40} {pos}/{len}, {elapsed} passed, {eta} left"));
+    bar.enable_steady_tick(std::time::Duration::from_millis(250));
     bar
 }
 
-/// Reads the scene of a study, which is the built-in bar if none is named.
+/// Reads the scene of a study, which is the built-in bar if none is named; its runs have what
+/// this machine has.
 pub fn template(scene: Option<&Path>) -> Result<Template, Fault> {
-    match scene {
-        Some(path) => Template::parse(path, &files::scene_text(path)?),
+    let budget = &machine::budget(true);
+    predicting(false, || match scene {
+        Some(path) => Template::parse_within(budget, path, &files::scene_text(path)?),
         None => Template::parse(Path::new("dyka.toml (built in)"), DYKA),
-    }
+    })
 }
 
 /// Refuses a scene without an exact solution: there is no error to measure.

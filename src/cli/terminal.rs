@@ -1,12 +1,14 @@
 //! Standard input is read here, standard output and error are written, and Ctrl-C is heard.
 
 use super::BOLD;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lme_mpm::run::Warning;
 use lme_mpm::scene::fault::{Fault, unprintable, visible};
 use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 const RED: anstyle::Style =
     anstyle::Style::new().bold().fg_color(Some(anstyle::Color::Ansi(anstyle::AnsiColor::Red)));
@@ -105,4 +107,27 @@ pub fn tell_usage(error: &clap::Error) -> u8 {
 /// Quotes a word for a shell: what stands between two ' is taken as it is.
 pub fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+/// Does what may predict a limit of Δt, and shows on a terminal's stderr, unless `quiet`, for how
+/// long it has been at it.
+pub fn predicting<T>(quiet: bool, what: impl FnOnce() -> T) -> T {
+    let bar = spinner(quiet);
+    let done = what();
+    bar.finish_and_clear();
+    done
+}
+
+/// Shows for how long a limit has been predicted; hidden if `quiet`, or without a terminal.
+pub fn spinner(quiet: bool) -> ProgressBar {
+    let hidden = || ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+    let bar = if quiet { hidden() } else { ProgressBar::new_spinner() };
+    bar.set_style(style("predicting the largest stable time step ({elapsed})"));
+    bar.enable_steady_tick(Duration::from_millis(250));
+    bar
+}
+
+/// Makes the style of a bar.
+pub fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or(ProgressStyle::default_bar())
 }

@@ -2,7 +2,7 @@
 
 use super::arguments::TradeArguments;
 use super::studies::{comparable, list_rows, progress, template};
-use super::terminal::{print_bytes, print_report, quoted};
+use super::terminal::{predicting, print_bytes, print_report, quoted};
 use lme_mpm::output::figure;
 use lme_mpm::output::files::{self, prepare, write_all};
 use lme_mpm::run::table::shortest;
@@ -54,7 +54,7 @@ fn row(template: &Template, line: &str) -> Result<(), Fault> {
 
 /// Prints the command of every configuration, ready for a shell.
 fn list(template: &Template, arguments: &TradeArguments) -> Result<(), Fault> {
-    let grid = trades::grid(template, arguments.full)?;
+    let grid = predicting(false, || trades::grid(template, arguments.full))?;
     let names: Vec<String> = grid.iter().map(Configuration::to_string).collect();
     list_rows("trade", arguments.scene.as_deref(), &names)
 }
@@ -62,7 +62,7 @@ fn list(template: &Template, arguments: &TradeArguments) -> Result<(), Fault> {
 /// Runs what the log in `dir` does not have yet; rows in the order of the grid.
 fn tried(template: &Template, dir: &Path, full: bool, jobs: u16) -> Result<Vec<Tried>, Fault> {
     prepare(dir)?;
-    let grid = trades::grid(template, full)?;
+    let grid = predicting(false, || trades::grid(template, full))?;
     let bar = progress(grid.len() * log::PASSES);
     let path = dir.join("runs.csv");
     let runs = log::complete(template, &grid, &path, usize::from(jobs), &mut |done, all| {

@@ -91,6 +91,9 @@ pub enum Breakdown {
     /// No step has failed: whoever listens to the run wants no more of it.
     #[error("the run was interrupted")]
     Interrupted,
+    /// No step has failed: the time is over that the run was given.
+    #[error("the {seconds} s of --max-time are over")]
+    OutOfTime { seconds: f64 },
 }
 
 /// Writes a fraction with three digits, rounded down.

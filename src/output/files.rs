@@ -2,7 +2,7 @@
 
 use crate::run;
 use crate::scene::fault::Fault;
-use crate::scene::{Scene, neither, shipped};
+use crate::scene::{Budget, Scene, neither, shipped};
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Write};
@@ -32,15 +32,15 @@ pub fn scene_text(path: &Path) -> Result<String, Fault> {
 }
 
 /// Reads a scene, a file or a shipped one, with the `KEY=VALUE` of `sets` in place of its
-/// own.
+/// own, that needs no more than the `budget`.
 ///
 /// Errors: those of [`scene_text`]; [`Fault::Scene`] with file, line, key and what is
 /// allowed.
-pub fn scene(path: &Path, sets: &[String]) -> Result<Scene, Fault> {
+pub fn scene(path: &Path, sets: &[String], budget: &Budget) -> Result<Scene, Fault> {
     let stem = path.file_stem().map_or("".into(), |stem| stem.to_string_lossy());
     // A name that is no name for a directory of results.
     let name = if stem.trim_matches('.').is_empty() { "scene".into() } else { stem };
-    Ok(run::parse(&name, &path.display().to_string(), &scene_text(path)?, sets)?)
+    Ok(run::parse_within(budget, &name, &path.display().to_string(), &scene_text(path)?, sets)?)
 }
 
 /// Refuses an `input` that a command would overwrite: a file in the folder `dir` with a name

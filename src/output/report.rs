@@ -64,12 +64,12 @@ pub struct Done {
 ///
 /// Errors: [`Fault::Unstable`] for a Δt above the predicted limit and [`Fault::Foreign`] for
 /// what is not ours in `dir`, before anything is written; [`Fault::Write`]; [`Fault::Run`]
-/// when the run breaks down; [`Fault::NotFinite`] for results that are no numbers, of which
-/// nothing is written.
+/// when the run breaks down, or `progress` ends it; [`Fault::NotFinite`] for results that are no
+/// numbers, of which nothing is written.
 pub fn run_into(
     dir: &Path,
     scene: &Scene,
-    progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
+    progress: &mut dyn FnMut(usize) -> ControlFlow<Breakdown>,
 ) -> Result<Done, Fault> {
     let limit = stable(scene)?;
     prepare(dir)?;
@@ -116,7 +116,8 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Fault {
         | Breakdown::NoBasis { .. }
         | Breakdown::SingularMass { .. }
         | Breakdown::NoMass { .. }
-        | Breakdown::Interrupted => String::new(),
+        | Breakdown::Interrupted
+        | Breakdown::OutOfTime { .. } => String::new(),
         Breakdown::BeyondLimit { .. } | Breakdown::Gained { .. } => {
             "give the time step as a part of the limit with \
              time.fraction_of_critical, or a smaller time.cfl; "

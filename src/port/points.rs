@@ -1,10 +1,11 @@
 //! Turns CSV of points into CSV of values, for the commands `exact` and `shape`.
 
 use super::rows::{self, Rows};
-use crate::method::basis::scattered::{NodeValues, values_at};
-use crate::method::basis::{self, Basis, Scratch};
+use crate::method::basis::scattered::{Places, fill_from_nodes};
+use crate::method::basis::{Basis, Scratch, fill_from_grid};
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
+use crate::method::continuum::state::Multiplier;
 use crate::method::grid::Grid;
 use crate::run::table::{csv, shortest};
 use crate::scene::Scene;
@@ -115,10 +116,15 @@ pub const COORDINATES: [&[&str]; 3] = [&["x"], &["x", "y"], &["x", "y", "z"]];
 /// spacing (m), points and nodes counted from 0, nodes outside the support left
 /// out. `half_length` of [`Basis::Ugimp`] is in units of the spacing.
 ///
+/// Nodes that form a full grid have the functions of a run with MPM. Local max-ent takes others,
+/// too, unless a box is asked for, which `needs_grid`: they have those of a run with OTM, of the nodes within R, which is
+/// at least the spacing and widened where they do not enclose the point.
+///
 /// Errors: [`Fault::Points`] with the line of a point that the basis cannot
 /// serve, or of a node that is not on a regular grid where the basis needs one.
 pub fn shape_at(
     basis: &Basis,
+    needs_grid: bool,
     spacing: f64,
     nodes: &Points,
     points: &Points,
@@ -133,50 +139,69 @@ pub fn shape_at(
         return Err(points.fault(0, problem, allowed));
     }
     match nodes.dimension() {
-        1 => shape_in::<1>(basis, spacing, nodes, points),
-        2 => shape_in::<2>(basis, spacing, nodes, points),
-        _ => shape_in::<3>(basis, spacing, nodes, points),
+        1 => shape_in::<1>(basis, needs_grid, spacing, nodes, points),
+        2 => shape_in::<2>(basis, needs_grid, spacing, nodes, points),
+        _ => shape_in::<3>(basis, needs_grid, spacing, nodes, points),
     }
 }
 
 fn shape_in<const D: usize>(
     basis: &Basis,
+    needs_grid: bool,
     spacing: f64,
     nodes: &Points,
     points: &Points,
 ) -> Result<Vec<u8>, Fault> {
-    let place = nodes.vectors::<D>();
-    let grid = match basis {
-        Basis::Lme { .. } => None,
-        _ => Some(regular_grid(spacing, nodes, &place)?),
+    let (place, x) = (nodes.vectors::<D>(), points.vectors::<D>());
+    let (mut shape, mut scratch) = (Shape::default(), Scratch::default());
+    let mut lambda = vec![Multiplier::default(); x.len()];
+    let (file_node, done) = match regular_grid(spacing, nodes, &place) {
+        Ok(Regular { grid, lowest, file_node }) => {
+            let x: Vec<_> = x.iter().map(|x| x - lowest).collect();
+            let done = fill_from_grid(&mut shape, &mut scratch, &mut lambda, basis, &grid, &x);
+            (file_node, done)
+        }
+        Err(fault) if needs_grid || basis.width().is_none() => return Err(fault),
+        Err(_) => {
+            let nodes = Places { x: &place, h: &SVector::repeat(spacing) };
+            let done = fill_from_nodes(&mut shape, &mut scratch, &mut lambda, basis, nodes, &x);
+            ((0..place.len()).collect(), done)
+        }
     };
+    done.map_err(|breakdown| unserved(points, breakdown))?;
     let mut rows = Vec::new();
-    for (n, x) in points.vectors::<D>().iter().enumerate() {
-        let values = match (basis, &grid) {
-            (Basis::Lme { gamma, cutoff, .. }, _) => values_at(&place, spacing, *gamma, *cutoff, x)
-                .map(|(values, _)| values)
-                .map_err(|failure| {
-                    let allowed =
-                        "a point inside the convex hull of the nodes within R".to_string();
-                    points.fault(n, format!("point {n}: {failure}"), allowed)
-                })?,
-            (_, Some(grid)) => grid.values(basis, x).map_err(|_| {
-                let problem = format!("point {n} stands outside the grid, or reaches beyond it");
-                points.fault(n, problem, "a point inside the grid of nodes".to_string())
-            })?,
-            _ => NodeValues::new(),
-        };
-        let in_support = |(_, N, grad): &(usize, f64, SVector<f64, D>)| {
-            *N != 0.0 || grad.iter().any(|slope| *slope != 0.0)
-        };
-        for (I, N, grad) in values.into_iter().filter(in_support) {
-            let mut row = vec![n.to_string(), I.to_string(), shortest(N)];
+    for (I, n, N, grad) in shape.pairs() {
+        if N != 0.0 || grad.iter().any(|slope| *slope != 0.0) {
+            let mut row = vec![n.to_string(), file_node[I].to_string(), shortest(N)];
             row.extend(grad.iter().map(|slope| shortest(*slope)));
             rows.push(row);
         }
     }
     let columns = ["point", "node", "N", "dN_dx", "dN_dy", "dN_dz"];
     csv(&columns[..3 + D], rows.into_iter())
+}
+
+/// Says which point has no functions, why, and what to do.
+fn unserved(points: &Points, breakdown: Breakdown) -> Fault {
+    let (n, problem, allowed) = match breakdown {
+        Breakdown::ReachesBeyond { particle, .. } => (
+            particle,
+            "a particle there reaches beyond the grid of nodes with its own size".to_string(),
+            "a point at least --half-length inside the grid, or a smaller --half-length",
+        ),
+        Breakdown::NoBasis { particle, failure } => {
+            (particle, failure.to_string(), "a point inside the convex hull of the nodes near it")
+        }
+        Breakdown::LeftGrid { particle, .. } => (
+            particle,
+            "it stands outside the grid of nodes".to_string(),
+            "a point inside the grid; give it nodes around it, or move it",
+        ),
+        other => {
+            (0, other.to_string(), "a point and nodes whose distance over --spacing is finite")
+        }
+    };
+    points.fault(n, format!("point {n}: {problem}"), allowed.to_string())
 }
 
 /// A regular grid knows the node of the file at each of its places.
@@ -186,23 +211,19 @@ struct Regular<const D: usize> {
     file_node: Vec<usize>,
 }
 
-impl<const D: usize> Regular<D> {
-    fn values(&self, basis: &Basis, x: &SVector<f64, D>) -> Result<NodeValues<D>, Breakdown> {
-        let (mut shape, mut scratch) = (Shape::default(), Scratch::default());
-        let x = [x - self.lowest];
-        // Of these bases none has a λ.
-        basis::fill_from_grid(&mut shape, &mut scratch, &mut [], basis, &self.grid, &x)?;
-        Ok(shape.of(0).map(|(I, N, grad)| (self.file_node[I], N, grad)).collect())
-    }
-}
-
 /// Finds the grid that the nodes form: all places of a box, each taken once.
 fn regular_grid<const D: usize>(
     spacing: f64,
     nodes: &Points,
     place: &[SVector<f64, D>],
 ) -> Result<Regular<D>, Fault> {
-    let allowed = || format!("nodes of a full grid with the spacing {}", shortest(spacing));
+    let allowed = || {
+        let spacing = shortest(spacing);
+        format!(
+            "nodes of a full grid with the spacing {spacing}; any nodes with --basis lme, where \
+             --support is not box"
+        )
+    };
     let lowest = place.iter().fold(place[0], |low, x| low.inf(x));
     let highest = place.iter().fold(place[0], |high, x| high.sup(x));
     let extent = highest - lowest;

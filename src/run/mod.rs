@@ -10,7 +10,7 @@ pub mod stability;
 pub mod table;
 mod warning;
 
-pub use open::parse;
+pub use open::{parse, parse_within};
 pub use outcome::{Frame, Outcome, Stopped};
 pub use warning::{Warning, Worst};
 
@@ -39,13 +39,14 @@ pub fn run(scene: &Scene, progress: &mut dyn FnMut(usize)) -> Result<Outcome, Bo
 }
 
 /// Runs a scene of which the limit of Δt may be known, so that the watch need not predict it
-/// again; `progress` hears the number of every finished step, and says whether to go on.
+/// again; `progress` hears the number of every finished step, and may break with the reason to
+/// end the run there.
 ///
-/// Errors: [`Stopped`] when the run breaks down, or `progress` breaks it off.
+/// Errors: [`Stopped`] when the run breaks down, or `progress` ends it.
 pub fn run_knowing(
     scene: &Scene,
     limit: Option<Critical>,
-    progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
+    progress: &mut dyn FnMut(usize) -> ControlFlow<Breakdown>,
 ) -> Result<Outcome, Box<Stopped>> {
     match scene.dimension() {
         1 => run_in::<1>(scene, limit, progress),
@@ -57,7 +58,7 @@ pub fn run_knowing(
 fn run_in<const D: usize>(
     scene: &Scene,
     limit: Option<Critical>,
-    progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
+    progress: &mut dyn FnMut(usize) -> ControlFlow<Breakdown>,
 ) -> Result<Outcome, Box<Stopped>> {
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
@@ -76,8 +77,10 @@ fn run_in<const D: usize>(
                 .and_then(|work| recorder.follow(&state, moment, work))
                 .and_then(|()| guards.judge(&state, moment))
                 .map_err(|what| what.at(moment))?;
-            if progress(step).is_break() && step < model.steps {
-                return Err(Breakdown::Interrupted.at(moment));
+            if let ControlFlow::Break(why) = progress(step)
+                && step < model.steps
+            {
+                return Err(why.at(moment));
             }
         }
         Ok(())

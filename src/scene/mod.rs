@@ -22,6 +22,7 @@ mod source;
 mod travel;
 mod values;
 
+pub use limits::Budget;
 pub use parts::*;
 pub use read::{Declared, declare};
 pub use shipped::{DYKA, SHIPPED, Shipped, neither, shipped};

@@ -1,7 +1,7 @@
 //! Makes of the values as written a checked [`Scene`].
 
 use super::fault::SceneError;
-use super::limits::affordable;
+use super::limits::{Budget, affordable};
 use super::loading::{body_force, traction};
 use super::motion::motion;
 use super::parts::*;
@@ -28,11 +28,11 @@ impl Declared {
         self.values.error(key, problem)
     }
 
-    /// Refuses a scene with these keys whose arrays would not fit.
+    /// Refuses a scene with these keys that would need more than the `budget`.
     ///
     /// Errors: [`SceneError`] with the key that asks for too much.
-    pub fn affordable(&self, scene: &Scene) -> Result<(), Box<SceneError>> {
-        affordable(scene).map_err(|excess| {
+    pub fn affordable(&self, scene: &Scene, budget: &Budget) -> Result<(), Box<SceneError>> {
+        affordable(scene, budget).map_err(|excess| {
             let mut error = self.error(excess.key, excess.problem);
             error.allowed = excess.allowed;
             error
@@ -41,7 +41,8 @@ impl Declared {
 }
 
 /// Reads a scene from `text`, with the `KEY=VALUE` of `sets` in place of its own; `path`
-/// is named in errors.
+/// is named in errors. Whether it can be afforded is another question,
+/// [`Declared::affordable`].
 ///
 /// Errors: [`SceneError`] with file, line, key and what is allowed.
 pub fn declare(
@@ -52,9 +53,7 @@ pub fn declare(
 ) -> Result<Declared, Box<SceneError>> {
     let values = Values::read(Source::new(path, text, sets))?;
     let scene = scene(name, &values)?;
-    let declared = Declared { scene, values };
-    declared.affordable(&declared.scene)?;
-    Ok(declared)
+    Ok(Declared { scene, values })
 }
 
 fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
@@ -77,6 +76,7 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         otm(values)?;
         grid.beyond.fill([0, 0]);
     }
+    crossed(values, &body, &grid)?;
     let basis = basis(values, &grid)?;
     filled(values, &body, &grid)?;
     let motion = motion(values, method, &body, &grid, &boundary)?;
@@ -163,6 +163,22 @@ fn balls(values: &Values, body: &Body) -> Result<Vec<Ball>, Box<SceneError>> {
         balls.push(Ball { centre: from_corner, radius });
     }
     Ok(balls)
+}
+
+/// Refuses cells so large or small that the square of the time in which a wave crosses one, of
+/// which the limit of Δt is made, is no ordinary number.
+fn crossed(values: &Values, body: &Body, grid: &GridSpec) -> Result<(), Box<SceneError>> {
+    let c = wave_speed(body);
+    for d in 0..values.dimension() {
+        let time = body.length[d] / grid.cells[d] as f64 / c;
+        if !(1e-150..=1e150).contains(&time) {
+            let problem = format!("a wave takes {time:e} s through a cell of grid.cells");
+            let mut error = values.error("body.length", problem);
+            error.allowed = "lengths that a wave takes from 1e-150 s to 1e150 s for".into();
+            return Err(error);
+        }
+    }
+    Ok(())
 }
 
 /// Refuses a ball that holds no particle.

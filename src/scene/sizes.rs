@@ -1,6 +1,8 @@
 //! Counts what a scene amounts to before anything is built: particles, nodes, pairs, steps.
 
 use super::parts::{Body, Scene};
+use crate::method::basis::{Basis, Support};
+use crate::method::choice::Mass;
 
 /// Gives c = √((λ + 2μ) / ρ) (m/s), the speed of a plane wave, (46) in the bar.
 pub fn wave_speed(body: &Body) -> f64 {
@@ -48,6 +50,66 @@ impl Scene {
             self.basis.most_along(before + self.grid.cells[d] as f64 + after + 1.0)
         };
         (0..self.dimension()).map(along).product()
+    }
+
+    /// Bounds the numbers that a row of the table of shape functions holds: of a list N, ∇N and
+    /// the node for each pair; of a product N and its slope for each node along each axis.
+    pub fn numbers_per_row(&self) -> f64 {
+        let ball = matches!(self.basis, Basis::Lme { support: Support::Ball, .. });
+        match (ball && self.dimension() > 1) || self.method.moves_nodes() {
+            true => (2.0 + self.dimension() as f64) * self.pairs_per_particle(),
+            false => (0..self.dimension()).map(|d| 2.0 * self.coupled(d).0).sum(),
+        }
+    }
+
+    /// Bounds along axis `d` the nodes that a particle sees, and those that particles see at all
+    /// while they fill the body's cells.
+    fn coupled(&self, d: usize) -> (f64, f64) {
+        let [before, after] = self.grid.beyond[d];
+        let (cells, all) = (self.grid.cells[d] as f64, (before + after) as f64 + 1.0);
+        let all = cells + all;
+        let along = libm::floor(self.basis.most_along(all)).min(all);
+        (along, all.min(cells + along))
+    }
+
+    /// Counts the sets of equations of the consistent mass matrix: components that the same sides
+    /// hold share one. There are none with the lumped matrix.
+    pub fn mass_systems(&self) -> f64 {
+        let held = |i: usize| {
+            self.boundary.iter().flatten().map(|side| side.fixed[i]).collect::<Vec<bool>>()
+        };
+        let mut sets: Vec<Vec<bool>> = (0..self.dimension()).map(held).collect();
+        sets.sort_unstable();
+        sets.dedup();
+        if self.mass == Mass::Consistent { sets.len() as f64 } else { 0.0 }
+    }
+
+    /// Bounds the entries of the consistent mass matrix.
+    pub fn mass_entries(&self) -> f64 {
+        let along = |d: usize| {
+            let (along, all) = self.coupled(d);
+            all * (2.0 * along - 1.0).min(all)
+        };
+        (0..self.dimension()).map(along).product()
+    }
+
+    /// Bounds the nodes that have mass, and how far apart in their natural order, the first axis
+    /// fastest, two of them stand that share a particle: the half bandwidth of m_IJ.
+    pub fn band(&self) -> (f64, f64) {
+        let (mut nodes, mut band) = (1.0, 0.0);
+        for d in 0..self.dimension() {
+            let (along, all) = self.coupled(d);
+            band += (along - 1.0) * nodes;
+            nodes *= all;
+        }
+        (nodes, band)
+    }
+
+    /// Bounds the entries of L, the Cholesky factor of the consistent mass matrix: in the natural
+    /// order the band fills up. Test: `budget_of_the_factor`.
+    pub fn factor_entries(&self) -> f64 {
+        let (nodes, band) = self.band();
+        nodes * (band + 1.0) - 0.5 * band * (band + 1.0)
     }
 
     /// Gives c Δt / h of a time step `dt` (s).

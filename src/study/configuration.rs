@@ -3,7 +3,7 @@
 
 use crate::run;
 use crate::scene::fault::Fault;
-use crate::scene::{Scene, merged};
+use crate::scene::{Budget, Scene, merged};
 use std::path::Path;
 
 /// These keys are what a study varies. A configuration answers for all of them: what the scene
@@ -120,6 +120,7 @@ pub struct Template {
     text: String,
     /// `grid.beyond` as it is written: sides and cells.
     beyond: Vec<(String, i64)>,
+    budget: Budget,
 }
 
 impl Template {
@@ -127,13 +128,21 @@ impl Template {
     ///
     /// Errors: [`Fault::Scene`].
     pub fn parse(path: &Path, text: &str) -> Result<Self, Fault> {
+        Template::parse_within(&Budget::default(), path, text)
+    }
+
+    /// Reads a scene as [`Template::parse`] does; it and its configurations are held against
+    /// another `budget`.
+    ///
+    /// Errors: [`Fault::Scene`].
+    pub fn parse_within(budget: &Budget, path: &Path, text: &str) -> Result<Self, Fault> {
         let path = path.display().to_string();
-        let scene = run::parse("scene", &path, text, &[])?;
+        let scene = run::parse_within(budget, "scene", &path, text, &[])?;
         let table = merged(&path, text, &[])?;
         let sides = table.get("grid").and_then(|grid| grid.get("beyond")?.as_table());
         let cells = |(side, n): (&String, &toml::Value)| Some((side.clone(), n.as_integer()?));
         let beyond = sides.into_iter().flatten().filter_map(cells).collect();
-        Ok(Template { scene, path, text: text.to_string(), beyond })
+        Ok(Template { scene, path, text: text.to_string(), beyond, budget: *budget })
     }
 
     /// Writes the grid of `method` as part of a configuration: the scene's cells times
@@ -168,7 +177,8 @@ impl Template {
     ///
     /// Errors: [`Fault::Scene`] for one that the scene cannot have.
     pub fn scene(&self, configuration: &Configuration) -> Result<Scene, Fault> {
-        Ok(run::parse("scene", &self.path, &self.text, &Self::sets(configuration))?)
+        let sets = Self::sets(configuration);
+        Ok(run::parse_within(&self.budget, "scene", &self.path, &self.text, &sets)?)
     }
 
     /// Writes the scene file of one configuration.

@@ -176,7 +176,16 @@ impl<const D: usize> ConsistentMass<D> {
     fn couple(&mut self, shape: &Shape<D>, nodes: usize) {
         let mut coupled: Vec<Vec<usize>> = (0..nodes).map(|I| vec![I]).collect();
         for (I, p, _, _) in shape.pairs() {
-            coupled[I].extend(shape.of(p).map(|(J, _, _)| J));
+            let list = &mut coupled[I];
+            for (J, _, _) in shape.of(p) {
+                if list.len() == list.capacity() {
+                    // So that it takes twice what the pattern does at most.
+                    list.sort_unstable();
+                    list.dedup();
+                    list.reserve_exact(list.len());
+                }
+                list.push(J);
+            }
         }
         let (mut offsets, mut indices) = (vec![0], Vec::new());
         for list in &mut coupled {
