@@ -11,7 +11,7 @@ fn alone_runs_the_bar() {
     let output = program(&dir, &[]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let stdout = text(&output.stdout);
-    for word in ["The Dyka and Ingel bar", "velocity end rms", "energy drift", "out/dyka"] {
+    for word in ["The Dyka and Ingel bar", "velocity end rms", "energy growth", "out/dyka"] {
         assert!(stdout.contains(word), "{stdout}");
     }
     let expected = [

@@ -53,7 +53,7 @@ fn gate_of_results() {
     let sets: Vec<&str> = heavy.iter().chain(&slow).flat_map(|set| ["--set", set]).collect();
     let output = program(&dir, &[&["run", "dyka", "--out", "heavy"][..], &sets].concat());
     assert_fails(&output, 1, &["stress_three_quarter_rms is inf", "no finite number"]);
-    assert_eq!(files(&dir.join("heavy")), [""; 0]);
+    assert!(!dir.join("heavy").exists());
     fs::write(
         dir.join("flat.toml"),
         "title = 'flat'\nmethod = 'mpm'\nmass = 'lumped'\nbasis.kind = 'linear'\n\
@@ -65,7 +65,7 @@ fn gate_of_results() {
     .unwrap();
     let output = program(&dir, &["run", "flat.toml", "--out", "flat"]);
     assert_fails(&output, 1, &["angular_momentum where step is 0 is -inf"]);
-    assert_eq!(files(&dir.join("flat")), [""; 0]);
+    assert!(!dir.join("flat").exists());
     // The exact solution of a bar as long as numbers go.
     let long = fs::read_to_string(DYKA).unwrap();
     let long = long

@@ -288,7 +288,7 @@ fn results_on_a_full_disk() {
     assert_eq!(limited(&root, 30, true, &finer).status.code(), None);
     assert_eq!(files(&root), [".o.lme-mpm-new", "o"]);
     let broken = format!("{run} --set time.cfl=1.9 --set time.allow_unstable=true");
-    let words = ["at step ", "t = ", "the run blew up", "particle ", "may be lost: cannot write"];
+    let words = ["at step ", "t = ", "check.energy", "particle ", "may be lost: cannot write"];
     assert_fails(&limited(&root, 0, false, &broken), 1, &words);
     assert_eq!(files(&root), ["o"]);
     assert_eq!(fs::read(root.join("o/history.csv")).unwrap(), before);

@@ -181,7 +181,7 @@ fn a_run_shows_what_matters() {
     let dir = directory("shown");
     let piped = text(&program(&dir, &["run", "dyka", "--out", "o"]).stdout);
     assert_eq!(piped.lines().count(), 1 + 1 + 8 + 1, "{piped}");
-    for name in ["velocity end rms relative", "energy drift largest", "particle node pairs"] {
+    for name in ["velocity end rms relative", "energy growth largest", "particle node pairs"] {
         assert!(piped.contains(name), "{piped}");
     }
     let all = text(&program(&dir, &["run", "dyka", "--out", "o", "--all"]).stdout);

@@ -24,7 +24,6 @@ use std::process::ExitCode;
 use std::time::Instant;
 use terminal::{open, predicting, print_bytes};
 
-const BOLD: anstyle::Style = anstyle::Style::new().bold();
 /// Does the command that was typed, and tells what went wrong.
 pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {

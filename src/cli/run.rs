@@ -1,7 +1,6 @@
 //! The command `lme-mpm run`: what it does with a scene, and what it shows.
 
-use super::BOLD;
-use super::terminal::{self, print_report, spinner, style};
+use super::terminal::{self, BOLD, print_report, spinner, style};
 use comfy_table::{CellAlignment, Table, presets};
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::output::report::Done;

@@ -1,6 +1,5 @@
 //! Standard input is read here, standard output and error are written, and Ctrl-C is heard.
 
-use super::BOLD;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lme_mpm::run::Warning;
 use lme_mpm::scene::fault::{Fault, unprintable, visible};
@@ -10,6 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+pub const BOLD: anstyle::Style = anstyle::Style::new().bold();
 const RED: anstyle::Style =
     anstyle::Style::new().bold().fg_color(Some(anstyle::Color::Ansi(anstyle::AnsiColor::Red)));
 

@@ -117,14 +117,8 @@ impl<const D: usize> State<D> {
                 MassMatrix::Consistent(Box::new(ConsistentMass::blank(nodes, &model.fixed)))
             }
         };
-        State {
-            particle,
-            node,
-            shape: Shape::blank(particles),
-            mass,
-            scratch: Scratch::default(),
-            steps: 0,
-        }
+        let shape = Shape::blank(particles);
+        State { particle, node, shape, mass, scratch: Scratch::default(), steps: 0 }
     }
 
     /// Gives what carries the body's mass and motion: the particles of MPM, the nodes of OTM.

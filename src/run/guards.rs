@@ -101,7 +101,9 @@ impl<'a, const D: usize> Guards<'a, D> {
     /// far (J).
     pub fn add_work(&mut self, state: &State<D>, moment: Moment) -> Option<f64> {
         let (particle, dt) = (&state.particle, self.model.dt);
-        if let (Some(work), Some(loads)) = (&mut self.work, &self.model.loads) {
+        if let (Some(work), Some(loads)) = (&mut self.work, &self.model.loads)
+            && moment.step > 0
+        {
             let step = loads.work(particle, &work.before, moment.time - dt, dt);
             work.sum += step;
             work.moved += step.abs();
