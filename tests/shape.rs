@@ -39,7 +39,8 @@ fn anywhere<const D: usize>(grid: &Grid<D>, margin: f64) -> Vec<SVector<f64, D>>
         SVector::from_fn(|d, _| {
             let random = (1.0 + (12.9898 * (3 * n + d) as f64).sin() * 0.999) * 0.5;
             let cell = (random * grid.cells[d] as f64).floor();
-            let within = if n % 3 == 0 { random } else { near[(n / 3 + 2 * d) % near.len()] };
+            let within =
+                if n.is_multiple_of(3) { random } else { near[(n / 3 + 2 * d) % near.len()] };
             let last = grid.cells[d] as f64 - margin;
             (cell + within).clamp(margin, last) * grid.h[d]
         })

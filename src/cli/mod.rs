@@ -16,7 +16,7 @@ use lme_mpm::port::check::{self, Tolerance};
 use lme_mpm::port::points::{self, Points};
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
-use lme_mpm::scene::{Budget, SHIPPED, declare, shipped};
+use lme_mpm::scene::{SHIPPED, declare, shipped};
 use lme_mpm::study::ranking::Question;
 use run::{Asked, Show, built_in, placed, run};
 use std::path::Path;
@@ -102,7 +102,7 @@ fn completions(shell: Shell) -> Result<(), Fault> {
 }
 
 fn exact(scene: &Path, points: &Path) -> Result<(), Fault> {
-    let scene = predicting(false, || files::scene(scene, &[], &Budget::default()))?;
+    let scene = predicting(false, || files::scene(scene, &[], &machine::budget(false)))?;
     let answer = points::exact_at(&scene, &points.display().to_string(), open(points)?)?;
     print_bytes(&answer)
 }
@@ -154,7 +154,7 @@ fn trace(
     out: Option<&Path>,
 ) -> Result<(), Fault> {
     let scene = predicting(false, || {
-        let scene = files::scene(path, sets, &machine::budget(true))?;
+        let scene = files::scene(path, sets, &machine::budget(false))?;
         lme_mpm::port::trace::affordable(&scene, steps)?;
         report::stable(&scene).map_err(|fault| placed(fault, &scene, path, sets))?;
         Ok::<_, Fault>(scene)
