@@ -8,13 +8,14 @@ mod verdicts;
 use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments};
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::{CellAlignment, presets};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lme_mpm::method::basis::{Basis, Support};
 use lme_mpm::output::summary::SummaryLine;
 use lme_mpm::output::{figure, files, report};
 use lme_mpm::port::check::{self, Tolerance};
 use lme_mpm::port::points::{self, Points};
+use lme_mpm::run::table::Table;
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
 use lme_mpm::scene::{DYKA, SHIPPED, Scene, declare, shipped};
@@ -118,19 +119,23 @@ fn run(scene: &Scene, path: Option<&Path>, out: Option<PathBuf>, show: Show) -> 
     });
     bar.finish_and_clear();
     let (lines, history) = lines?;
-    if show == Show::Nothing {
-        return Ok(());
+    match show {
+        Show::Nothing => Ok(()),
+        _ => print_report(&shown(scene, &lines, &history, show), "", &dir),
     }
+}
+
+/// Writes what a run shows: its title, on a terminal its first probe, and figures.
+fn shown(scene: &Scene, lines: &[SummaryLine], history: &Table, show: Show) -> String {
     let plot = match scene.probes.first().filter(|_| std::io::stdout().is_terminal()) {
-        Some(probe) => figure::in_terminal(scene, probe, &history),
+        Some(probe) => figure::in_terminal(scene, probe, history),
         None => String::new(),
     };
-    let chief: Vec<&SummaryLine> = match show {
+    let figures: Vec<&SummaryLine> = match show {
         Show::All => lines.iter().collect(),
-        _ => chief(scene, &lines),
+        _ => chief(scene, lines),
     };
-    let own = format!("{BOLD}{}{BOLD:#}\n{plot}{}\n", scene.title, table(&chief));
-    print_report(&own, "", &dir)
+    format!("{BOLD}{}{BOLD:#}\n{plot}{}\n", scene.title, table(&figures))
 }
 
 /// Puts a time step that is too large where it was written: file, line and key.
@@ -175,8 +180,8 @@ fn chief<'a>(scene: &Scene, lines: &'a [SummaryLine]) -> Vec<&'a SummaryLine> {
 }
 
 /// Lays out the summary as a table for the terminal.
-fn table(lines: &[&SummaryLine]) -> Table {
-    let mut table = Table::new();
+fn table(lines: &[&SummaryLine]) -> comfy_table::Table {
+    let mut table = comfy_table::Table::new();
     table.load_style(presets::NOTHING).set_header(["quantity", "value", "unit"]);
     for line in lines {
         let value = match line.value {
@@ -241,7 +246,7 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
     if half > 0.5 {
         return Err(Fault::Argument {
             argument: "--half-length",
-            problem: format!("{half} of the spacing"),
+            problem: format!("half a particle is {half} times as long as the spacing"),
             allowed: "at most half of the spacing",
         });
     }

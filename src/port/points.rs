@@ -158,7 +158,11 @@ fn shape_in<const D: usize>(
                 .map_err(|failure| {
                     let allowed =
                         "a point inside the convex hull of the nodes within R".to_string();
-                    points.fault(n, format!("point {n}: {failure}"), allowed)
+                    points.fault(
+                        n,
+                        format!("point {n} has no shape functions, because {failure}"),
+                        allowed,
+                    )
                 })?,
             (_, Some(grid)) => grid.values(basis, x).map_err(|_| {
                 let problem = format!("point {n} stands outside the grid, or reaches beyond it");
