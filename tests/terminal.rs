@@ -203,3 +203,21 @@ fn a_run_shows_what_matters() {
     let both = program(&dir, &["run", "dyka", "--all", "--quiet"]);
     assert_fails(&both, 2, &["--all", "--quiet"]);
 }
+
+/// What `shape` cannot do it says in sentences.
+#[test]
+fn shape_refuses_in_sentences() {
+    let dir = directory("shape-sentences");
+    fs::write(dir.join("nodes.csv"), "x\n0\n1\n2\n").unwrap();
+    let shape = |basis: &[&str], points: &str| {
+        let files = ["--spacing", "1", "--nodes", "nodes.csv", "--points", "-"];
+        program_with_input(&dir, &[&["shape", "--basis"][..], basis, &files].concat(), points)
+    };
+    let long = shape(&["ugimp", "--half-length", "0.7"], "x\n1\n");
+    assert_fails(&long, 2, &["half a particle is 0.7 times as long as the spacing"]);
+    let outside = shape(&["lme", "--gamma", "1"], "x\n1\n9\n");
+    let words = ["-, line 3: point 1 has no shape functions, because the point is outside"];
+    assert_fails(&outside, 2, &words);
+    let outside = shape(&["linear"], "x\n9\n");
+    assert_fails(&outside, 2, &["-, line 2: point 0 stands outside the grid"]);
+}

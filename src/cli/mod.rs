@@ -125,7 +125,7 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
     if half > 0.5 {
         return Err(Fault::Argument {
             argument: "--half-length",
-            problem: format!("{half} of the spacing"),
+            problem: format!("half a particle is {half} times as long as the spacing"),
             allowed: "at most half of the spacing",
         });
     }

@@ -1,12 +1,13 @@
 //! The command `lme-mpm run`: what it does with a scene, and what it shows.
 
 use super::terminal::{self, BOLD, print_report, spinner, style};
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::{CellAlignment, presets};
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::output::report::Done;
 use lme_mpm::output::summary::SummaryLine;
 use lme_mpm::output::{figure, files, report};
 use lme_mpm::run::Warning;
+use lme_mpm::run::table::Table;
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::{DYKA, Scene, declare};
 use std::io::IsTerminal;
@@ -64,19 +65,23 @@ pub fn run(scene: &Scene, asked: Asked) -> Result<Vec<Warning>, Fault> {
     });
     bar.finish_and_clear();
     let Done { lines, history, warnings } = done?;
-    if show == Show::Nothing {
-        return Ok(warnings);
+    if show != Show::Nothing {
+        print_report(&shown(scene, &lines, &history, show), "", &dir)?;
     }
+    Ok(warnings)
+}
+
+/// Writes what a run shows: its title, on a terminal its first probe, and figures.
+fn shown(scene: &Scene, lines: &[SummaryLine], history: &Table, show: Show) -> String {
     let plot = match scene.probes.first().filter(|_| std::io::stdout().is_terminal()) {
-        Some(probe) => figure::in_terminal(scene, probe, &history),
+        Some(probe) => figure::in_terminal(scene, probe, history),
         None => String::new(),
     };
-    let chief: Vec<&SummaryLine> = match show {
+    let figures: Vec<&SummaryLine> = match show {
         Show::All => lines.iter().collect(),
-        _ => chief(scene, &lines),
+        _ => chief(scene, lines),
     };
-    let own = format!("{BOLD}{}{BOLD:#}\n{plot}{}\n", scene.title, table(&chief));
-    print_report(&own, "", &dir).map(|()| warnings)
+    format!("{BOLD}{}{BOLD:#}\n{plot}{}\n", scene.title, table(&figures))
 }
 
 /// Puts a time step that is too large where it was written: file, line and key.
@@ -120,8 +125,8 @@ fn chief<'a>(scene: &Scene, lines: &'a [SummaryLine]) -> Vec<&'a SummaryLine> {
 }
 
 /// Lays out the summary as a table for the terminal.
-fn table(lines: &[&SummaryLine]) -> Table {
-    let mut table = Table::new();
+fn table(lines: &[&SummaryLine]) -> comfy_table::Table {
+    let mut table = comfy_table::Table::new();
     table.load_style(presets::NOTHING).set_header(["quantity", "value", "unit"]);
     for line in lines {
         let value = match line.value {

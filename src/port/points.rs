@@ -184,24 +184,26 @@ fn shape_in<const D: usize>(
 /// Says which point has no functions, why, and what to do.
 fn unserved(points: &Points, breakdown: Breakdown) -> Fault {
     let (n, problem, allowed) = match breakdown {
-        Breakdown::ReachesBeyond { particle, .. } => (
-            particle,
-            "a particle there reaches beyond the grid of nodes with its own size".to_string(),
+        Breakdown::ReachesBeyond { particle: n, .. } => (
+            n,
+            format!("a particle at point {n} reaches beyond the grid of nodes with its own size"),
             "a point at least --half-length inside the grid, or a smaller --half-length",
         ),
-        Breakdown::NoBasis { particle, failure } => {
-            (particle, failure.to_string(), "a point inside the convex hull of the nodes near it")
-        }
-        Breakdown::LeftGrid { particle, .. } => (
-            particle,
-            "it stands outside the grid of nodes".to_string(),
+        Breakdown::NoBasis { particle: n, failure } => (
+            n,
+            format!("point {n} has no shape functions, because {failure}"),
+            "a point inside the convex hull of the nodes near it",
+        ),
+        Breakdown::LeftGrid { particle: n, .. } => (
+            n,
+            format!("point {n} stands outside the grid of nodes"),
             "a point inside the grid; give it nodes around it, or move it",
         ),
         other => {
             (0, other.to_string(), "a point and nodes whose distance over --spacing is finite")
         }
     };
-    points.fault(n, format!("point {n}: {problem}"), allowed.to_string())
+    points.fault(n, problem, allowed.to_string())
 }
 
 /// A regular grid knows the node of the file at each of its places.
