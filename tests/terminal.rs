@@ -216,7 +216,7 @@ fn shape_refuses_in_sentences() {
     let long = shape(&["ugimp", "--half-length", "0.7"], "x\n1\n");
     assert_fails(&long, 2, &["half a particle is 0.7 times as long as the spacing"]);
     let outside = shape(&["lme", "--gamma", "1"], "x\n1\n9\n");
-    let words = ["-, line 3: point 1 has no shape functions, because the point is outside"];
+    let words = ["-, line 3: point 1 stands outside the grid"];
     assert_fails(&outside, 2, &words);
     let outside = shape(&["linear"], "x\n9\n");
     assert_fails(&outside, 2, &["-, line 2: point 0 stands outside the grid"]);

@@ -77,10 +77,9 @@ fn run_in<const D: usize>(
                 .and_then(|work| recorder.follow(&state, moment, work))
                 .and_then(|()| guards.judge(&state, moment))
                 .map_err(|what| what.at(moment))?;
-            if let ControlFlow::Break(why) = progress(step)
-                && step < model.steps
-            {
-                return Err(why.at(moment));
+            match progress(step) {
+                ControlFlow::Break(why) if step < model.steps => return Err(why.at(moment)),
+                _ => {}
             }
         }
         Ok(())
@@ -88,11 +87,10 @@ fn run_in<const D: usize>(
     if let Err(broken) = march() {
         return Err(Box::new(Stopped { broken, history: recorder.history }));
     }
-    let end = Moment::of(model.steps, model.dt);
     let bytes_per_particle = model.bytes_per_particle() as u64;
     let limit_applications = guards.as_ref().map_or(0, Guards::limit_applications);
     Ok(Outcome {
-        particles: recorder.particles(&state, end.time),
+        particles: recorder.particles(&state, Moment::of(model.steps, model.dt).time),
         frames: recorder.frames,
         history: recorder.history,
         growth: guards.as_ref().map_or(0.0, Guards::growth),
