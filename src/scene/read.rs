@@ -62,10 +62,6 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
     let mass = values.choose("mass", &masses)?;
     let body = body(values)?;
     let time = time(values)?;
-    let check = Check {
-        energy: values.number("check.energy")?,
-        rotation: values.number("check.rotation")?,
-    };
     let method = match is_otm {
         true => Method::Otm(nodal_mass(values)?),
         false => Method::Mpm(integrator(values)?),
@@ -93,7 +89,7 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         grid,
         basis,
         time,
-        check,
+        check: check(values)?,
         boundary,
         motion,
         body_force,
@@ -102,6 +98,11 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         every: values.whole("output.every")?,
         vtk: vtk(values)?,
     })
+}
+
+fn check(values: &Values) -> Result<Check, Box<SceneError>> {
+    let (energy, rotation) = (values.number("check.energy")?, values.number("check.rotation")?);
+    Ok(Check { energy, rotation })
 }
 
 fn vtk(values: &Values) -> Result<bool, Box<SceneError>> {
