@@ -9,7 +9,7 @@ use approx::assert_relative_eq;
 use lme_mpm::method::basis::lme::Failure;
 use lme_mpm::method::basis::scattered::NodeValues;
 use lme_mpm::method::basis::scattered::values_at as lme_at;
-use lme_mpm::method::basis::{Basis, Support};
+use lme_mpm::method::basis::{Basis, Degree, Support};
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::method::grid::Grid;
 use lme_mpm::output::figure::{self, Axes};
@@ -17,6 +17,8 @@ use nalgebra::{SMatrix, SVector, Vector1, Vector2, Vector3};
 use proptest::prelude::*;
 use test_case::test_case;
 
+const BSPLINE: Basis = Basis::BSpline(Degree::Quadratic);
+const CUBIC: Basis = Basis::BSpline(Degree::Cubic);
 const UGIMP: Basis = Basis::Ugimp { half_length: [0.25, 0.5, 0.125] };
 
 const fn lme(gamma: f64) -> Basis {
@@ -149,12 +151,12 @@ proptest! {
     #[test]
     fn basis_checklist(s in [0.0..=1.0_f64, 0.0..=1.0, 0.0..=1.0], g in 0..4_usize) {
         let gamma = [0.8, 1.8, 4.0, 20.0][g];
-        for basis in [Basis::Linear, UGIMP, Basis::BSpline, lme(gamma)] {
+        for basis in [Basis::Linear, UGIMP, BSPLINE, CUBIC, lme(gamma)] {
             check_mirror(&basis, s[0]);
             check::<1>(&basis, s);
             check::<2>(&basis, s);
         }
-        for basis in [Basis::Linear, UGIMP, Basis::BSpline] {
+        for basis in [Basis::Linear, UGIMP, BSPLINE, CUBIC] {
             check::<3>(&basis, s);
         }
         check_sums::<3>(&lme(gamma), s);
@@ -183,14 +185,77 @@ fn bspline_at_the_ends() {
     let grid = Grid::<1>::over([1.0], [4], [[0, 0]]);
     for x in [0.0, 0.05, 0.12, 0.88, 0.95, 1.0] {
         let linear = row(&Basis::Linear, &grid, Vector1::new(x));
-        assert_eq!(row(&Basis::BSpline, &grid, Vector1::new(x)), linear);
+        assert_eq!(row(&BSPLINE, &grid, Vector1::new(x)), linear);
     }
     // There N and its slope are continuous.
     let (before, after) = (0.125 - 1e-13, 0.125 + 1e-13);
-    let side = |x| row(&Basis::BSpline, &grid, Vector1::new(x));
+    let side = |x| row(&BSPLINE, &grid, Vector1::new(x));
     for (a, b) in side(before).iter().zip(&side(after)) {
         assert_relative_eq!(a.1, b.1, epsilon = 1e-11);
         assert_relative_eq!(a.2[0], b.2[0], epsilon = 1e-10);
+    }
+}
+
+/// Away from the ends a sum of B-splines is any polynomial of their degree: x² from
+/// x_I² − h²/4 (quadratic) or x_I² − h²/3 (cubic), x³ from x_I³ − h² x_I (cubic), to 1e-13.
+#[test]
+fn bsplines_are_polynomials() {
+    let grid = Grid::<1>::over([2.0], [8], [[0, 0]]);
+    let h = 0.25;
+    let square = |part: f64| move |x: f64| x * x - h * h * part;
+    let cube = |x: f64| x * x * x - h * h * x;
+    for n in 0..50 {
+        let x = 0.5 + n as f64 * 0.02;
+        let sum = |basis: &Basis, of: &dyn Fn(f64) -> f64| -> (f64, f64) {
+            let row = row(basis, &grid, Vector1::new(x));
+            row.iter().fold((0.0, 0.0), |(sum, slope), (I, N, grad)| {
+                let q = of(grid.position(*I)[0]);
+                (sum + N * q, slope + grad[0] * q)
+            })
+        };
+        for (found, value, slope) in [
+            (sum(&BSPLINE, &square(0.25)), x * x, 2.0 * x),
+            (sum(&CUBIC, &square(1.0 / 3.0)), x * x, 2.0 * x),
+            (sum(&CUBIC, &cube), x * x * x, 3.0 * x * x),
+        ] {
+            assert_relative_eq!(found.0, value, epsilon = 1e-13);
+            assert_relative_eq!(found.1, slope, epsilon = 1e-12);
+        }
+    }
+}
+
+/// At an end of the grid the cubic end node interpolates, and the second derivative of every
+/// function is 0; the neighbours' is not, half a cell inside. A grid of one cell has linear functions.
+#[test]
+fn bspline_cubic_at_the_ends() {
+    let grid = Grid::<1>::over([1.0], [4], [[0, 0]]);
+    for (end, inward) in [(0.0, 1.0), (1.0, -1.0)] {
+        let slopes = |depth: f64| {
+            let row = row(&CUBIC, &grid, Vector1::new(end + inward * depth));
+            (0..5)
+                .map(|I| row.iter().find(|v| v.0 == I).map_or(0.0, |v| v.2[0]))
+                .collect::<Vec<_>>()
+        };
+        let at = row(&CUBIC, &grid, Vector1::new(end));
+        let own = if end == 0.0 { 0 } else { 4 };
+        for (I, N, _) in at {
+            assert_relative_eq!(N, if I == own { 1.0 } else { 0.0 }, epsilon = 1e-15);
+        }
+        let (first, near, far) = (slopes(0.0), slopes(1e-4), slopes(0.125));
+        for I in 0..5 {
+            // The slope grows with the square of the depth.
+            assert!((near[I] - first[I]).abs() < 1e-5, "{I}: {first:?} {near:?}");
+        }
+        assert!((0..5).any(|I| (far[I] - first[I]).abs() > 0.1), "{first:?} {far:?}");
+    }
+    let one = Grid::<1>::over([1.0], [1], [[0, 0]]);
+    for x in [0.0, 0.3, 0.9] {
+        let (cubic, linear) =
+            (row(&CUBIC, &one, Vector1::new(x)), row(&Basis::Linear, &one, Vector1::new(x)));
+        for (a, b) in cubic.iter().zip(&linear) {
+            assert_relative_eq!(a.1, b.1, epsilon = 1e-15);
+            assert_relative_eq!(a.2[0], b.2[0], epsilon = 1e-14);
+        }
     }
 }
 
@@ -244,7 +309,8 @@ fn basis_figure() {
     let bases = [
         ("linear", Basis::Linear),
         ("uGIMP, l = ¼", UGIMP),
-        ("quadratic B-spline", Basis::BSpline),
+        ("quadratic B-spline", BSPLINE),
+        ("cubic B-spline", CUBIC),
         ("local max-ent, γ = 0.8", lme(0.8)),
         ("local max-ent, γ = 4", lme(4.0)),
     ];
@@ -267,7 +333,8 @@ fn basis_figure() {
 /// Outside the grid, and for NaN, there is no row but a named particle.
 #[test_case(Basis::Linear)]
 #[test_case(UGIMP)]
-#[test_case(Basis::BSpline)]
+#[test_case(BSPLINE)]
+#[test_case(CUBIC)]
 #[test_case(lme(1.8))]
 fn basis_names_the_particle_outside(basis: Basis) {
     let inside = Vector2::new(0.1, 0.1);

@@ -3,6 +3,7 @@
 mod analytical;
 mod basis;
 mod book;
+mod bsplines;
 mod budget;
 #[path = "bench/cases.rs"]
 mod cases;

@@ -1,7 +1,7 @@
 //! The functions that `lme-mpm shape` prints are those that a run uses.
 
 use crate::support::*;
-use lme_mpm::method::basis::{Basis, Support};
+use lme_mpm::method::basis::{Basis, Degree, Support};
 use lme_mpm::method::grid::Grid;
 use lme_mpm::port::points::{COORDINATES, Points, shape_at};
 use lme_mpm::run::table::shortest;
@@ -57,7 +57,12 @@ fn shape_is_what_a_run_uses<const D: usize>() {
     let own = |n: usize| (n * 11 + 3) % grid.nodes();
     let order: Vec<usize> = (0..grid.nodes()).map(own).collect();
     let nodes: Vec<SVector<f64, D>> = order.iter().map(|I| grid.position(*I)).collect();
-    let mut bases = vec![Basis::Linear, Basis::Ugimp { half_length: [0.25; 3] }, Basis::BSpline];
+    let mut bases = vec![
+        Basis::Linear,
+        Basis::Ugimp { half_length: [0.25; 3] },
+        Basis::BSpline(Degree::Quadratic),
+        Basis::BSpline(Degree::Cubic),
+    ];
     for gamma in [0.3, 0.8, 1.8, 4.0, 8.0, 20.0] {
         for support in [Support::Box, Support::Ball] {
             bases.push(Basis::Lme { gamma, cutoff: 1e-6, support });

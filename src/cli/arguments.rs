@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use lme_mpm::method::basis::Support;
+use lme_mpm::method::basis::{Degree, Support};
 use lme_mpm::scene::SHIPPED;
 use lme_mpm::study::measured::Criterion;
 use std::path::PathBuf;
@@ -301,6 +301,9 @@ pub struct ShapeArguments {
     /// scene; box without it
     #[arg(long, value_parser = support())]
     pub support: Option<Support>,
+    /// The degree of bspline, as basis.degree of a scene; quadratic without it
+    #[arg(long, value_parser = degree())]
+    pub degree: Option<Degree>,
     /// Half the length of a particle of ugimp (m), at most H/2
     #[arg(long, value_name = "LP", required_if_eq("basis", "ugimp"), value_parser = positive, allow_negative_numbers = true)]
     pub half_length: Option<f64>,
@@ -324,6 +327,12 @@ pub enum BasisName {
 fn support() -> impl TypedValueParser<Value = Support> {
     PossibleValuesParser::new(["box", "ball"])
         .map(|name| if name == "box" { Support::Box } else { Support::Ball })
+}
+
+/// Reads the name of a degree.
+fn degree() -> impl TypedValueParser<Value = Degree> {
+    PossibleValuesParser::new(["quadratic", "cubic"])
+        .map(|name| if name == "cubic" { Degree::Cubic } else { Degree::Quadratic })
 }
 
 /// Reads the name of the quantity whose error is asked for.

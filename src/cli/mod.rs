@@ -10,7 +10,7 @@ mod verdicts;
 use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments};
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
-use lme_mpm::method::basis::{Basis, Support};
+use lme_mpm::method::basis::{Basis, Degree, Support};
 use lme_mpm::output::{files, report};
 use lme_mpm::port::check::{self, Tolerance};
 use lme_mpm::port::points::{self, Points};
@@ -109,12 +109,15 @@ fn exact(scene: &Path, points: &Path) -> Result<(), Fault> {
 
 fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
     let spacing = arguments.spacing;
-    let (lme, ugimp) = (arguments.basis == BasisName::Lme, arguments.basis == BasisName::Ugimp);
+    let is = |name: BasisName| arguments.basis == name;
+    let (lme, ugimp) = (is(BasisName::Lme), is(BasisName::Ugimp));
+    let bspline = is(BasisName::Bspline);
     for (argument, foreign, allowed) in [
         ("--gamma", arguments.gamma.is_some() && !lme, "with --basis lme only"),
         ("--cutoff", arguments.cutoff.is_some() && !lme, "with --basis lme only"),
         ("--support", arguments.support.is_some() && !lme, "with --basis lme only"),
         ("--half-length", arguments.half_length.is_some() && !ugimp, "with --basis ugimp only"),
+        ("--degree", arguments.degree.is_some() && !bspline, "with --basis bspline only"),
     ] {
         if foreign {
             let problem = "it means nothing to this basis".to_string();
@@ -132,7 +135,7 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
     let basis = match arguments.basis {
         BasisName::Linear => Basis::Linear,
         BasisName::Ugimp => Basis::Ugimp { half_length: [half; 3] },
-        BasisName::Bspline => Basis::BSpline,
+        BasisName::Bspline => Basis::BSpline(arguments.degree.unwrap_or(Degree::Quadratic)),
         BasisName::Lme => Basis::Lme {
             gamma: arguments.gamma.unwrap_or(1.0),
             cutoff: arguments.cutoff.unwrap_or(1e-6),

@@ -75,7 +75,7 @@ impl Warning {
         }
         let from = match scene.basis {
             Basis::Linear | Basis::Ugimp { .. } => 0.45,
-            Basis::BSpline => 0.499,
+            Basis::BSpline(_) => 0.499,
             Basis::Lme { gamma, .. } if gamma <= 1.0 => 0.499,
             Basis::Lme { gamma, .. } if gamma <= 4.0 && !scene.method.moves_nodes() => 0.49,
             Basis::Lme { .. } => 0.45,

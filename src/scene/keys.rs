@@ -118,9 +118,16 @@ pub const KEYS: &[Key] = &[
     must(
         "basis.kind",
         Choice(&["linear", "ugimp", "lme", "bspline"]),
-        "Linear, uGIMP, local max-ent, quadratic B-splines",
+        "Linear, uGIMP, local max-ent, B-splines",
     )
     .besides("with the method \"otm\" \"lme\", in 1D also \"linear\""),
+    may(
+        "basis.degree",
+        Choice(&["quadratic", "cubic"]),
+        Without::Word("quadratic"),
+        "The degree of B-splines",
+    )
+    .with("basis.kind", "bspline"),
     must("basis.gamma", One(between(Included(1e-6), Included(1e6))), "γ = βh²")
         .with("basis.kind", "lme"),
     may(

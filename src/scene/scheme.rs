@@ -3,7 +3,7 @@
 use super::fault::SceneError;
 use super::parts::{GridSpec, Time};
 use super::values::Values;
-use crate::method::basis::{Basis, Support};
+use crate::method::basis::{Basis, Degree, Support};
 use crate::method::choice::Integrator;
 use crate::method::reading::{Kinematics, NodalMass, StepEight, StressUpdate};
 
@@ -74,7 +74,9 @@ pub fn basis(values: &Values, grid: &GridSpec) -> Result<Basis, Box<SceneError>>
     match values.word("basis.kind")? {
         "linear" => Ok(Basis::Linear),
         "ugimp" => Ok(Basis::Ugimp { half_length: [half(0), half(1), half(2)] }),
-        "bspline" => Ok(Basis::BSpline),
+        "bspline" => values
+            .choose("basis.degree", &[("quadratic", Degree::Quadratic), ("cubic", Degree::Cubic)])
+            .map(Basis::BSpline),
         "lme" => Ok(Basis::Lme {
             gamma: values.number("basis.gamma")?,
             cutoff: values.number("basis.cutoff")?,

@@ -8,10 +8,11 @@ use std::path::Path;
 
 /// These keys are what a study varies. A configuration answers for all of them: what the scene
 /// says of them itself is taken out first.
-pub const KEYS: [&str; 15] = [
+pub const KEYS: [&str; 16] = [
     "method",
     "mass",
     "basis.kind",
+    "basis.degree",
     "basis.gamma",
     "basis.cutoff",
     "basis.support",

@@ -21,8 +21,17 @@ pub enum Basis {
         /// What |ξ| is in the cut-off.
         support: Support,
     },
-    /// Quadratic B-splines centred at the nodes.
-    BSpline,
+    /// B-splines centred at the nodes.
+    BSpline(Degree),
+}
+
+/// B-splines have one of two degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Degree {
+    /// Parabolas, with one continuous derivative.
+    Quadratic,
+    /// Cubic functions, with two.
+    Cubic,
 }
 
 /// The cut-off of local max-ent leaves a box of nodes, or a ball.
@@ -40,7 +49,7 @@ impl Basis {
     pub fn width(&self) -> Option<Width> {
         match self {
             Basis::Lme { gamma, cutoff, .. } => Some(Width::of(*gamma, *cutoff)),
-            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline => None,
+            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline(_) => None,
         }
     }
 
@@ -48,7 +57,7 @@ impl Basis {
     pub fn has_multiplier(&self) -> bool {
         match self {
             Basis::Lme { .. } => true,
-            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline => false,
+            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline(_) => false,
         }
     }
 
@@ -56,7 +65,7 @@ impl Basis {
     /// its mass, so that the limit of Δt is also taken with all particles moved by a touch.
     pub fn switches_nodes_on(&self) -> bool {
         match self {
-            Basis::Ugimp { .. } | Basis::BSpline => true,
+            Basis::Ugimp { .. } | Basis::BSpline(_) => true,
             Basis::Linear | Basis::Lme { .. } => false,
         }
     }
@@ -65,7 +74,8 @@ impl Basis {
     pub fn most_along(&self, nodes: f64) -> f64 {
         match self {
             Basis::Linear => 2.0,
-            Basis::Ugimp { .. } | Basis::BSpline => 3.0,
+            Basis::Ugimp { .. } | Basis::BSpline(Degree::Quadratic) => 3.0,
+            Basis::BSpline(Degree::Cubic) => 4.0,
             Basis::Lme { gamma, cutoff, .. } => (2.0 * radius(*gamma, *cutoff) + 2.0).min(nodes),
         }
     }

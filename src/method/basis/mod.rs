@@ -11,7 +11,7 @@ pub mod support;
 pub mod tensor;
 pub mod ugimp;
 
-pub use kind::{Basis, Support};
+pub use kind::{Basis, Degree, Support};
 pub use scratch::Scratch;
 
 use super::breakdown::Breakdown;
@@ -49,9 +49,8 @@ pub fn fill_from_grid<const D: usize>(
                 let axes: [_; D] = from_fn(|d| linear::factors(at.xi[d], grid.per_h[d]));
                 shape.push_product(from_fn(|d| (at.cell[d], &axes[d][..])));
             }
-            Making::BSpline => {
-                let axes: [_; D] =
-                    from_fn(|d| bspline::axis(at.cell[d], grid.cells[d], at.xi[d], grid.h[d]));
+            Making::BSpline(degree) => {
+                let axes = bspline::axes(degree, &at, grid);
                 shape.push_product(from_fn(|d| axes[d].factors()));
             }
             Making::Ugimp(half_length) => {
@@ -79,7 +78,7 @@ pub fn fill_from_grid<const D: usize>(
 enum Making {
     Linear,
     Ugimp([f64; 3]),
-    BSpline,
+    BSpline(Degree),
     Box(Width),
     Ball(Width),
 }
@@ -90,7 +89,7 @@ impl Making {
         match *basis {
             Basis::Linear => Making::Linear,
             Basis::Ugimp { half_length } => Making::Ugimp(half_length),
-            Basis::BSpline => Making::BSpline,
+            Basis::BSpline(degree) => Making::BSpline(degree),
             Basis::Lme { gamma, cutoff, support } => match support {
                 Support::Ball if D > 1 => Making::Ball(Width::of(gamma, cutoff)),
                 Support::Ball | Support::Box => Making::Box(Width::of(gamma, cutoff)),

@@ -4,12 +4,12 @@
 use crate::method::continuum::shape::Factor;
 
 /// An axis holds the functions of one coordinate at one place, for neighbouring nodes from
-/// `first` on; at most three.
+/// `first` on; at most four.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Axis {
     first: usize,
     len: usize,
-    factor: [Factor; 3],
+    factor: [Factor; 4],
 }
 
 impl Axis {
