@@ -3,6 +3,7 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use lme_mpm::port::trace::SYMBOLS;
 use lme_mpm::scene::SHIPPED;
 use lme_mpm::study::measured::Criterion;
 use std::path::PathBuf;
@@ -122,6 +123,15 @@ pub enum Command {
         /// Compare what both have, also where the port has only some numbers of a symbol, or more
         #[arg(long)]
         part: bool,
+        /// Leave this symbol out; may be given more than once
+        #[arg(long, value_name = "SYMBOL", value_parser = PossibleValuesParser::new(SYMBOLS.map(|known| known.0)))]
+        skip: Vec<String>,
+        /// Begin with this time step
+        #[arg(long, value_name = "K", default_value_t = 0)]
+        from: usize,
+        /// List the first difference of every symbol, not only the first of all
+        #[arg(long)]
+        all: bool,
     },
     /// Measure the trade of speed for accuracy on a scene
     ///

@@ -13,7 +13,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lme_mpm::method::basis::{Basis, Support};
 use lme_mpm::output::summary::SummaryLine;
 use lme_mpm::output::{files, report};
-use lme_mpm::port::check::{self, Tolerance};
+use lme_mpm::port::check::{self, Asked, Tolerance};
 use lme_mpm::port::points::{self, Points};
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
@@ -42,8 +42,9 @@ pub fn main() -> ExitCode {
         Some(Command::Trace { scene, steps, set, hex, out }) => {
             trace(&scene, steps, &set, hex, out.as_deref())
         }
-        Some(Command::Check { reference, theirs, rtol, atol, part }) => {
-            compare(&reference, &theirs, Tolerance { relative: rtol, absolute: atol }, part)
+        Some(Command::Check { reference, theirs, rtol, atol, part, skip, from, all }) => {
+            let tolerance = Tolerance { relative: rtol, absolute: atol };
+            compare(&reference, &theirs, &Asked { tolerance, part, skip, from, all })
         }
         Some(Command::Trade(arguments)) => verdicts::trade(&arguments),
         Some(Command::Recommend { scene, error, quantity, out, jobs }) => {
@@ -247,7 +248,7 @@ fn place_beside(input: &Path, out: &Path) -> Result<(PathBuf, String), Fault> {
     Ok((folder.to_path_buf(), name.to_string_lossy().into_owned()))
 }
 
-fn compare(reference: &Path, theirs: &Path, tolerance: Tolerance, part: bool) -> Result<(), Fault> {
+fn compare(reference: &Path, theirs: &Path, asked: &Asked) -> Result<(), Fault> {
     if reference == Path::new("-") && theirs == Path::new("-") {
         return Err(Fault::Argument {
             argument: "THEIRS",
@@ -257,7 +258,7 @@ fn compare(reference: &Path, theirs: &Path, tolerance: Tolerance, part: bool) ->
     }
     let read = |path: &Path| check::read(&path.display().to_string(), open(path)?);
     let (reference, theirs) = (read(reference)?, read(theirs)?);
-    let report = check::compare(&reference.entries, &theirs, tolerance, part)?;
+    let report = check::compare_as(&reference.entries, &theirs, asked)?;
     match report.divergence {
         None => print_bytes(report.text().as_bytes()),
         Some(_) => Err(Fault::Differs(report.text().trim_end().to_string())),
