@@ -22,6 +22,7 @@ mod lme_box;
 mod loads;
 mod mass;
 mod matrix;
+mod mistakes;
 mod one_bar;
 mod orders;
 mod otm;

@@ -265,7 +265,7 @@ fn port_mistakes_are_found() {
     let mut line = |bug: &str, level: &str, report: Report| {
         let Some(found) = report.divergence else { panic!("{bug} was not found") };
         let Entry { k, step, symbol, .. } = found.reference;
-        let cause = found.cause.unwrap_or("–").replace(',', ";");
+        let cause = found.cause.as_deref().unwrap_or("–").replace(',', ";");
         writeln!(table, "{bug},{level},{k},{step},{symbol},{cause}").unwrap();
         (step, symbol)
     };
@@ -283,7 +283,7 @@ fn port_mistakes_are_found() {
         (wide, mistake("node-off-by-one", 2, "N_Ip")),
         (wide, mistake("gamma-is-beta-over-h2", 2, "N_Ip")),
         (wide, mistake("cut-after-solving", 2, "N_Ip")),
-        (linear, mistake("mass-of-the-whole-cell", 3, "m_I")),
+        (linear, mistake("mass-of-the-whole-cell", 0, "m_p")),
         (wide, mistake("fixed-node-moves", 4, "v_I")),
         (quarter, mistake("modulus-is-E", 6, "sigma_p")),
         (linear, mistake("stress-of-this-step", 6, "sigma_p")),

@@ -28,28 +28,34 @@ pub fn of(entry: &Entry, theirs: &[Entry], nothing: f64, traces: &Traces) -> Opt
     let group = traces.group(entry, nothing);
     let scheme = Scheme::of(traces.all);
     let own = group.list.iter().find(|both| both.entry == entry)?.own;
+    let usual = |own: f64| of_step(entry, own, scheme).map(str::to_string);
+    let with_usual = |found: String| match usual(own) {
+        Some(usual) => format!("{found}; {usual}"),
+        None => found,
+    };
+    let added = group.increments();
     precision::of(theirs, &group.list)
         .or_else(|| group.of_another_time())
         .or_else(|| held(entry, own, &group))
-        .or_else(|| group.of_nothing())
-        .or_else(|| group.of_a_sum())
+        .or_else(|| group.of_nothing().or_else(|| group.of_a_sum()).map(with_usual))
         .or_else(|| group.of_swapped_axes())
+        .or_else(|| {
+            group.of_a_factor().filter(|f| near(*f, -1.0)).map(|_| turned(entry.symbol).into())
+        })
         .or_else(|| group.of_another_order())
         .or_else(|| group.of_another_symbol())
         .or_else(|| scaled(entry, &group, scheme))
         .or_else(|| group.of_component_factors())
         .or_else(|| shifted(entry, &group))
         .or_else(|| sights(entry, &group))
-        .or_else(|| of_step(entry, own, scheme).map(str::to_string))
+        .or_else(|| precision::by_size(added.as_ref().map_or(&group.list[..], |added| &added.list)))
+        .or_else(|| usual(own))
 }
 
 /// Finds a factor, in all that is there or in what this step has added, and says what it is
 /// usually.
 fn scaled(entry: &Entry, group: &Group, scheme: Scheme) -> Option<String> {
     if let Some(factor) = group.of_a_factor() {
-        if near(factor, -1.0) {
-            return Some(turned(entry.symbol).to_string());
-        }
         let usual = of_step(entry, factor * entry.value, scheme);
         let usual = usual.map_or(String::new(), |usual| format!("; {usual}"));
         return Some(format!("all have the factor {}{usual}", group.named(factor)));
@@ -96,12 +102,16 @@ fn held(entry: &Entry, own: f64, group: &Group) -> Option<String> {
     let off: Vec<_> = group.off().collect();
     let kept = |both: &&super::patterns::Both| both.right == 0.0 && both.own != 0.0;
     let lost = |both: &&super::patterns::Both| both.right != 0.0 && both.own == 0.0;
-    if !of_node || off.is_empty() || !off.iter().all(|both| kept(&both) || lost(&both)) {
+    let nothing = group.list.iter().all(|both| both.own == 0.0);
+    if !of_node || nothing || off.is_empty() || !off.iter().all(|both| kept(&both) || lost(&both)) {
         return None;
     }
     let set =
         "set to 0 in p_I (step of v_I) and in f_I, and in the components that the side holds alone";
     let brings = ["p_I", "f_int_I"].contains(&entry.symbol);
+    if brings && !off.iter().all(|both| group.traces.is_fixed(both.entry)) {
+        return None;
+    }
     Some(match (off.iter().any(|both| kept(both)), off.iter().any(|both| lost(both))) {
         (true, true) => format!("other components or sides are fixed than should be: {set}"),
         (false, _) if brings => format!(
@@ -135,6 +145,18 @@ fn sights(entry: &Entry, group: &Group) -> Option<String> {
         (false, false) => "particles see the right nodes",
     };
     let sums = if whole { "and N still sums up to 1" } else { "and N no longer sums up to 1" };
+    if entry.k > 0
+        && let Some(words) = on_an_edge(entry, group)
+    {
+        return Some(words);
+    }
+    let same = !more && !fewer;
+    if same && whole && precision::by_size(&group.list).is_some() {
+        return None;
+    }
+    if same && whole && entry.k > 0 && entry.symbol == "N_Ip" {
+        return Some("N was right before: it is made anew wherever the particle stands after its move, with OTM on the nodes where they stand now".into());
+    }
     let why = match (max_ent, more || fewer, whole, entry.symbol) {
         (_, _, _, "grad_N_Ip") if max_ent => {
             "the gradient: the factor 1/h of each axis, J with r ⊗ r taken off, λ solved on this set of nodes"
@@ -143,7 +165,7 @@ fn sights(entry: &Entry, group: &Group) -> Option<String> {
             "the gradient: the factor 1/h of each axis, and the product rule: slope of one axis, N of the others"
         }
         (true, true, true, _) => {
-            "the cut-off: a box or a ball (basis.support), R = h √(−ln(cut-off)/γ) with the h of each axis"
+            "the cut-off: a box or a ball (basis.support), R = h √(−ln(cut-off)/γ), with γ = βh² and the h of each axis"
         }
         (true, true, false, _) => {
             "nodes are cut off before λ is solved, and the set stays the same while it is"
@@ -154,11 +176,28 @@ fn sights(entry: &Entry, group: &Group) -> Option<String> {
         (true, false, true, _) => {
             "γ = βh² with the h of each axis, or λ is not that of (37) on this set"
         }
-        (false, true, _, _) => "another cell, or cells beyond the body are missing or too many",
+        (false, true, _, _) => {
+            "another cell, cells beyond the body that are missing or too many, or uGIMP's half-length, half of the particle's share of the cell"
+        }
         (false, false, false, _) => "N is a product over the axes of functions that sum up to 1",
         (false, false, true, _) => {
             "N is made anew wherever the particle stands after its move, from its place in its cell"
         }
     };
     Some(format!("{which}, {sums}: {why}"))
+}
+
+/// Finds a particle that stands on a node, to round-off: which cell it belongs to is then chance.
+fn on_an_edge(entry: &Entry, group: &Group) -> Option<String> {
+    let of_particle = |e: &&Entry| (e.k, e.symbol, e.index) == (entry.k, "x_p", entry.index);
+    let stands = |e: &Entry| {
+        let cells = group.traces.given("h", e.component).map(|h| e.value / h);
+        cells.is_some_and(|x| (x - x.round()).abs() < 1e-11 * x.abs().max(1.0))
+    };
+    let on_node = group.traces.all.iter().filter(of_particle).any(stands);
+    on_node.then(|| {
+        "the particle stands on a node to the last digits: it belongs to the cell above, ξ is \
+         measured from the node's own coordinate; from here on both may be right"
+            .into()
+    })
 }

@@ -192,7 +192,7 @@ impl TraceRecorder {
         let rate = !model.law.law.is_hyperelastic();
         let of_map = model.kinematics == Kinematics::Consistent;
         let (wanted, name, list) = match symbol {
-            "G_p" => (!rate || of_map, symbol, &particle.G),
+            "G_p" => (model.keeps_gradient(), symbol, &particle.G),
             "d_eps_p_printed" => (rate && !of_map, "d_eps_p", &particle.d_eps),
             "d_eps_p_of_map" => (rate && of_map, "d_eps_p", &particle.d_eps),
             _ => (rate, symbol, &particle.d_eps),

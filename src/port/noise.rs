@@ -7,22 +7,27 @@
 use super::entry::Entry;
 use std::collections::{BTreeSet, HashMap};
 
-/// Floors stand here in words, symbol by symbol. V is the largest velocity so far, m_I/m the
-/// mass of a node over that of the heaviest, e_p = Δt Σ_I |∇N_Ip| V m/m_I, M = λ + 2μ.
-pub const FLOORS: [(&str, &str); 10] = [
-    ("v_I", "V m/m_I"),
-    ("a_I", "(F/m) m/m_I, F the scale of f_I, or of a_p times m/m_I"),
-    ("d_eps_p, G_p", "e_p of this table of N or the last, Δt V/h without one"),
-    ("F_p", "1 or e_p"),
-    ("rho_p", "ρ_p or ρ_p e_p"),
-    ("sigma_p", "M times the largest e_p so far"),
+/// Floors stand here in words, symbol by symbol.
+pub const FLOORS: [(&str, &str); 11] = [
+    (
+        "where",
+        "V is the largest |v_p| so far, m/m_I the mass of the heaviest node over that of node I, \
+         e_p = Δt V Σ_I |∇N_Ip| m/m_I of this table or the last and at least Δt V/h, M = λ + 2μ, F \
+         the largest force or floor of one; of V, h, x and ρ the values in the reference",
+    ),
+    ("v_I", "(V + Δt F/m) m/m_I"),
+    ("a_I", "(F/m) m/m_I, or the largest a_p in place of F/m"),
+    ("d_eps_p, G_p", "e_p"),
+    ("F_p", "1, or the largest e_p so far"),
+    ("rho_p", "ρ, or ρ times the largest e_p so far"),
+    ("sigma_p", "M times the largest e_p so far; M where F_p is kept, whose digits are those of 1"),
     (
         "f_int_I, f_ext_I, f_I",
-        "Σ_p |∇N_Ip| (m_p/ρ_p) times the floor of σ_p, or the largest of all three",
+        "Σ_p |∇N_Ip| (m_p/ρ) times the floor of σ_p, or the largest of all three",
     ),
     ("a_p", "F over the smallest m_p"),
-    ("v_p, p_I, p_I_advanced", "V, and Δt times the floor of a_p; p_I this times the largest m_I"),
-    ("x_p, x_I, N_Ip, grad_N_Ip, lambda", "h, or x itself; x/h; x/h²; 2γ x/h²"),
+    ("v_p, p_I, p_I_advanced", "V and Δt F/m_p; this times m; this and Δt F"),
+    ("x_p, x_I, N_Ip, grad_N_Ip, lambda", "the largest x, at least h; x/h; x/h²; 2γ x/h²"),
 ];
 
 /// A scale is the largest value of a symbol in a time step, or its floor.
@@ -161,7 +166,15 @@ impl Floors {
                 ("G_p", e),
                 ("F_p", so_far.max(1.0)),
                 ("rho_p", given.rho * so_far.max(1.0)),
-                ("sigma_p", given.modulus * *so_far),
+                (
+                    "sigma_p",
+                    given.modulus
+                        * if self.largest.contains_key(&(k, "F_p")) {
+                            so_far.max(1.0)
+                        } else {
+                            *so_far
+                        },
+                ),
             ] {
                 self.of_index.insert((k, symbol, p), floor);
             }
@@ -173,7 +186,7 @@ impl Floors {
         let mut floor: HashMap<usize, f64> = HashMap::new();
         for (p, I, slope) in &running.tables[1] {
             let volume = given.m_p.get(p).copied().unwrap_or(0.0) / given.rho;
-            let stress = given.modulus * running.e_p.get(p).copied().unwrap_or(0.0);
+            let stress = self.of_index.get(&(k, "sigma_p", *p)).copied().unwrap_or(0.0);
             *floor.entry(*I).or_insert(0.0) += slope * volume * stress;
         }
         const FORCES: [&str; 3] = ["f_int_I", "f_ext_I", "f_I"];

@@ -51,6 +51,15 @@ impl<'a> Traces<'a> {
         self.reference.get(&(0, 0, symbol, 0, None, component)).copied()
     }
 
+    /// Tells whether a node is fixed: of what the particles bring it keeps nothing.
+    pub fn is_fixed(&self, entry: &Entry) -> bool {
+        let kept = if entry.symbol == "p_I" { "v_I" } else { "f_I" };
+        let here = |e: &&Entry| {
+            (e.k, e.symbol, e.index, e.component) == (entry.k, kept, entry.index, entry.component)
+        };
+        self.all.iter().find(here).is_some_and(|e| e.value == 0.0)
+    }
+
     /// Counts the dimensions of the scene, as far as the reference tells.
     pub fn dimension(&self) -> usize {
         (0..3).take_while(|d| self.given("h", *d).is_some()).count()
@@ -124,8 +133,15 @@ impl<'a> Group<'a> {
         moved.then(|| Group::of(list, nothing, self.traces))
     }
 
-    /// Finds numbers of another time step.
+    /// Finds numbers of another time step. They show in the first symbol of it: where others
+    /// before it are right, it is no matter of the count.
     pub fn of_another_time(&self) -> Option<String> {
+        let own = self.list.first()?.entry;
+        let printed = |e: &&Entry| e.k == own.k && self.traces.theirs.contains_key(&address(e));
+        let first = self.traces.all.iter().filter(|e| e.step > 0).find(printed)?;
+        if (first.step, first.symbol) != (own.step, own.symbol) {
+            return None;
+        }
         for (by, words) in [(1, "next"), (-1, "last")] {
             let at = |both: &Both| {
                 let k = both.entry.k.checked_add_signed(by)?;
@@ -288,12 +304,24 @@ impl<'a> Group<'a> {
         if odd.all(|(_, factor)| near(*factor, -1.0)) {
             return Some(format!("the sign of component {c}"));
         }
-        let names: Vec<String> = factors.iter().map(|factor| self.named(*factor)).collect();
+        let names: Vec<String> =
+            factors.iter().enumerate().map(|(c, factor)| self.named_along(c, *factor)).collect();
         let single = factors.iter().filter(|factor| !near(**factor, 1.0)).count() == 1;
         Some(match single {
             true => format!("component {c} alone has the factor {}", self.named(*factor)),
             false => format!("the components have the factors {}", names.join(", ")),
         })
+    }
+
+    /// Says the factor of a component: by its own h, where it is that.
+    fn named_along(&self, component: usize, factor: f64) -> String {
+        const NAMES: [&str; 3] = ["h_x", "h_y", "h_z"];
+        let h = self.traces.given("h", component).filter(|_| component < 3);
+        match h {
+            Some(h) if near(factor, h) => NAMES[component].to_string(),
+            Some(h) if near(factor, 1.0 / h) => format!("1/{}", NAMES[component]),
+            _ => self.named(factor),
+        }
     }
 
     /// Says a factor in words, where it is made of what the scene gives.
@@ -337,37 +365,36 @@ impl<'a> Group<'a> {
     /// Finds the same numbers at other indices; for a pair at other nodes.
     pub fn of_another_order(&self) -> Option<String> {
         let pairs = self.list.first()?.entry.node.is_some();
-        let place = |e: &Entry| if pairs { e.node.unwrap_or(0) } else { e.index };
         let what =
             if pairs || self.list[0].entry.symbol.ends_with("_I") { "nodes" } else { "particles" };
-        for (by, words) in [(1_isize, "1 instead of 0"), (-1, "1 less than 0")] {
-            // Where the other trace has nothing nothing is said.
-            let shifted = |e: &Entry, by: isize| -> Option<Entry> {
-                let moved = place(e).checked_add_signed(by)?;
-                Some(match pairs {
-                    true => Entry { node: Some(moved), ..e.clone() },
-                    false => Entry { index: moved, ..e.clone() },
-                })
-            };
-            let (mut told, mut fits) = (0, 0);
-            for both in self.list.iter().filter(|both| both.right != 0.0) {
-                let Some(own) = shifted(both.entry, by)
-                    .and_then(|e| self.traces.theirs.get(&address(&e)).copied())
-                else {
-                    continue;
-                };
-                told +=
-                    usize::from(!self.same(own, both.right) || !self.same(both.own, both.right));
-                fits += usize::from(self.same(own, both.right));
-            }
-            let counted = self.list.iter().filter(|both| both.right != 0.0).count();
-            if told > 0 && fits > 1 && 4 * fits >= 3 * counted && fits >= told {
+        for (by, words) in [(1, "1 instead of 0"), (-1, "1 less than 0")] {
+            if self.is_shifted(pairs, by) {
                 return Some(format!(
                     "the {what} are numbered off by one: they are counted from {words}"
                 ));
             }
         }
         self.permuted(pairs, what)
+    }
+
+    /// Tells whether the port has every number at the index, or node, that is `by` larger.
+    fn is_shifted(&self, pairs: bool, by: isize) -> bool {
+        let (mut told, mut fits, mut looked) = (0, 0, 0);
+        let values = self.list.iter().filter(|both| both.right != 0.0);
+        for Both { entry, right, own } in values.clone() {
+            let moved = |place: usize| place.checked_add_signed(by);
+            let there = match pairs {
+                true => {
+                    entry.node.and_then(moved).map(|I| Entry { node: Some(I), ..(*entry).clone() })
+                }
+                false => moved(entry.index).map(|index| Entry { index, ..(*entry).clone() }),
+            };
+            let Some(shifted) = there.and_then(|e| self.traces.theirs_at(&e)) else { continue };
+            looked += 1;
+            told += usize::from(!self.same(*own, *right));
+            fits += usize::from(self.same(shifted, *right));
+        }
+        told > 0 && fits > 1 && fits == looked && 2 * looked >= values.count()
     }
 
     /// Finds numbers that are those of the reference in another order: of whole rows for
@@ -403,8 +430,15 @@ impl<'a> Group<'a> {
             found?;
             moved += 1;
         }
+        let all = match what {
+            "nodes" => ", over all cells of the grid, those beyond the body included",
+            _ => "",
+        };
         (moved > 1).then(|| {
-            format!("the same numbers in another order: the {what} are numbered with x fastest, then y, then z")
+            format!(
+                "the same numbers in another order: the {what} are numbered with x fastest, then y, \
+                 then z{all}"
+            )
         })
     }
 }

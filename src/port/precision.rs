@@ -32,18 +32,23 @@ pub fn of(theirs: &[Entry], group: &[Both]) -> Option<String> {
     if behind < FEW {
         return Some(format!("the numbers are printed with {behind} decimals: use %.17g"));
     }
-    let off: Vec<f64> = group.iter().map(|both| apart(both.right, both.own, group)).collect();
-    let largest = off.iter().copied().fold(0.0, f64::max);
-    let own = group.iter().map(|both| both.own).filter(|x| *x != 0.0);
-    if own.clone().count() > 1 && own.clone().all(|x| f64::from(x as f32) == x) {
-        return Some("these numbers are those of single precision (32 bits)".into());
-    }
-    (1e-9..3e-6).contains(&largest).then(|| {
+    let rounded = |both: &Both| both.own == f64::from(both.right as f32);
+    let changed = group.iter().any(|both| both.own != both.right);
+    (changed && group.iter().all(rounded))
+        .then(|| "these numbers are those of single precision (32 bits)".into())
+}
+
+/// Says what small differences tell by their size, relative to the largest of `group`.
+pub fn by_size(group: &[Both]) -> Option<String> {
+    let off = group.iter().map(|both| apart(both.right, both.own, group));
+    let largest = off.fold(0.0, f64::max);
+    (1e-12..3e-6).contains(&largest).then(|| {
         let symbol = group.first().map_or("", |both| both.entry.symbol);
-        match symbol {
-            "N_Ip" | "grad_N_Ip" | "lambda" => "differences of 1e-9 to 1e-6: is λ converged to the last digit, or is something in single precision?".into(),
-            _ => "differences of 1e-9 to 1e-6: something is in single precision, or a constant has few digits".to_string(),
-        }
+        let why = match symbol {
+            "N_Ip" | "grad_N_Ip" | "lambda" => "is λ solved to the last digit?",
+            _ => "has a constant few digits, or is a sum cancelled?",
+        };
+        format!("the difference is {largest:.0e} of the largest: is something in single precision, or {why}")
     })
 }
 

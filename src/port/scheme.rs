@@ -153,7 +153,9 @@ fn of_otm(place: (&str, usize)) -> Option<&'static str> {
     Some(match place {
         ("m_I", _) => "m_a = Σ m_p N at the start, and stays (nodal_mass)",
         ("v_I", 1) => "a kick is ½ Δt f_a/m_a with the forces of the step before",
-        ("v_I", 7) => "a kick is ½ Δt f_a/m_a with the new forces",
+        ("v_I", 7) => {
+            "a kick is ½ Δt f_a/m_a with the new forces, and with the m_a of the start, which stays (nodal_mass)"
+        }
         ("x_I", _) => "nodes move by Δt v_a after the first kick",
         ("x_p", _) => "points move by Δt Σ v_a N with N of the step before",
         ("G_p", _) => {

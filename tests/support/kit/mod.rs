@@ -4,6 +4,7 @@ pub mod texts;
 
 use super::*;
 use lme_mpm::method::choice::Law;
+use lme_mpm::port::noise::FLOORS;
 use lme_mpm::scene::DYKA;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -312,6 +313,8 @@ fn whole_runs() -> Vec<Piece> {
 struct Manifest {
     version: &'static str,
     tolerances: BTreeMap<&'static str, Class>,
+    /// Scales below which the absolute tolerance of a symbol does not go, in words.
+    floors: BTreeMap<&'static str, &'static str>,
     files: Vec<File>,
 }
 
@@ -341,6 +344,7 @@ pub fn manifest(kit: &[Piece]) -> String {
     let manifest = Manifest {
         version: VERSION,
         tolerances: CLASSES.map(|class| (class.name, class)).into(),
+        floors: FLOORS.into(),
         files: kit.iter().map(file).collect(),
     };
     serde_json::to_string_pretty(&manifest).unwrap() + "\n"
