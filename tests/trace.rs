@@ -245,7 +245,7 @@ fn check_names_the_usual_cause() {
         (&linear, Box::new(scaled("N_Ip", 2)), "all have the factor 1.5"),
         (&lme, Box::new(scaled("N_Ip", 2)), "all have the factor 1.5"),
         (&linear, Box::new(scaled("dt", 0)), "Δt = T/n"),
-        (&linear, Box::new(scaled("x_p", 0)), "the start: h = L/cells"),
+        (&linear, Box::new(scaled("x_p", 0)), "the start: each particle"),
         (&linear, Box::new(scaled("x_p", 1)), "(27) moves with the nodes"),
         (&linear, Box::new(scaled("v_p", 1)), "(28) is half a step"),
         (&linear, Box::new(scaled("v_p", 9)), "(29) is half a step"),

@@ -2,9 +2,9 @@
 //! then what a step of a scheme usually suffers from.
 
 use super::entry::{Entry, SYMBOLS};
-use super::patterns::{Group, Traces, near};
+use super::patterns::{Both, Group, Traces, near};
 use super::precision;
-use super::scheme::{Scheme, of_step};
+use super::scheme::{TracedScheme, of_step};
 
 /// Gives the equation and its place in the book, by symbol and, in Newmark's scheme, by step.
 pub fn source(entry: &Entry) -> (&'static str, &'static str) {
@@ -26,7 +26,7 @@ pub fn source(entry: &Entry) -> (&'static str, &'static str) {
 /// Gives the likely cause of a difference at `entry`, with what is as small as `nothing`.
 pub fn of(entry: &Entry, theirs: &[Entry], nothing: f64, traces: &Traces) -> Option<String> {
     let group = traces.group(entry, nothing);
-    let scheme = Scheme::of(traces.all);
+    let scheme = TracedScheme::of(traces.all);
     let own = group.list.iter().find(|both| both.entry == entry)?.own;
     let usual = |own: f64| of_step(entry, own, scheme).map(str::to_string);
     let with_usual = |found: String| match usual(own) {
@@ -54,7 +54,7 @@ pub fn of(entry: &Entry, theirs: &[Entry], nothing: f64, traces: &Traces) -> Opt
 
 /// Finds a factor, in all that is there or in what this step has added, and says what it is
 /// usually.
-fn scaled(entry: &Entry, group: &Group, scheme: Scheme) -> Option<String> {
+fn scaled(entry: &Entry, group: &Group, scheme: TracedScheme) -> Option<String> {
     if let Some(factor) = group.of_a_factor() {
         let usual = of_step(entry, factor * entry.value, scheme);
         let usual = usual.map_or(String::new(), |usual| format!("; {usual}"));
@@ -100,8 +100,8 @@ fn shifted(entry: &Entry, group: &Group) -> Option<String> {
 fn held(entry: &Entry, own: f64, group: &Group) -> Option<String> {
     let of_node = ["v_I", "f_I", "p_I_advanced", "p_I", "f_int_I", "a_I"].contains(&entry.symbol);
     let off: Vec<_> = group.off().collect();
-    let kept = |both: &&super::patterns::Both| both.right == 0.0 && both.own != 0.0;
-    let lost = |both: &&super::patterns::Both| both.right != 0.0 && both.own == 0.0;
+    let kept = |both: &&Both| both.right == 0.0 && both.own != 0.0;
+    let lost = |both: &&Both| both.right != 0.0 && both.own == 0.0;
     let nothing = group.list.iter().all(|both| both.own == 0.0);
     if !of_node || nothing || off.is_empty() || !off.iter().all(|both| kept(&both) || lost(&both)) {
         return None;
@@ -129,15 +129,22 @@ fn held(entry: &Entry, own: f64, group: &Group) -> Option<String> {
 /// way round; and sums of N and ∇N.
 fn sights(entry: &Entry, group: &Group) -> Option<String> {
     entry.node?;
-    let max_ent = group.traces.all.iter().any(|e| e.symbol == "lambda");
+    if entry.k > 0
+        && let Some(words) = on_an_edge(entry, group)
+    {
+        return Some(words);
+    }
     let more = group.list.iter().any(|both| both.right == 0.0 && both.own != 0.0);
     let fewer = group.list.iter().any(|both| both.right != 0.0 && both.own == 0.0);
-    let sum = |of: &dyn Fn(&super::patterns::Both) -> f64| {
-        let row = group.list.iter().filter(|both| both.entry.index == entry.index);
-        row.filter(|both| both.entry.component == entry.component).map(of).sum::<f64>()
-    };
-    let whole = (sum(&|both| both.own) - sum(&|both| both.right)).abs()
-        < 1e-9 * sum(&|both| both.right.abs());
+    let here = |e: &Entry| (e.index, e.component) == (entry.index, entry.component);
+    let row = || group.list.iter().filter(|both| here(both.entry));
+    let sum = |of: &dyn Fn(&Both) -> f64| row().map(of).sum::<f64>();
+    let size = sum(&|both| both.right.abs());
+    let whole = (sum(&|both| both.own) - sum(&|both| both.right)).abs() < 1e-9 * size;
+    let same = !more && !fewer;
+    if same && whole && precision::by_size(&group.list).is_some() {
+        return None;
+    }
     let which = match (more, fewer) {
         (true, true) => "particles see other nodes",
         (true, false) => "particles see more nodes",
@@ -145,46 +152,52 @@ fn sights(entry: &Entry, group: &Group) -> Option<String> {
         (false, false) => "particles see the right nodes",
     };
     let sums = if whole { "and N still sums up to 1" } else { "and N no longer sums up to 1" };
-    if entry.k > 0
-        && let Some(words) = on_an_edge(entry, group)
-    {
-        return Some(words);
-    }
-    let same = !more && !fewer;
-    if same && whole && precision::by_size(&group.list).is_some() {
-        return None;
-    }
-    if same && whole && entry.k > 0 && entry.symbol == "N_Ip" {
-        return Some("N was right before: it is made anew wherever the particle stands after its move, with OTM on the nodes where they stand now".into());
-    }
-    let why = match (max_ent, more || fewer, whole, entry.symbol) {
-        (_, _, _, "grad_N_Ip") if max_ent => {
-            "the gradient: the factor 1/h of each axis, J with r ⊗ r taken off, λ solved on this set of nodes"
+    let max_ent = group.traces.all.iter().any(|e| e.symbol == "lambda");
+    let why = match entry.symbol {
+        "N_Ip" if same && whole && entry.k > 0 => {
+            "N was right before: it is made anew wherever the particle stands after its move, with \
+             OTM on the nodes where they stand now"
         }
-        (_, _, _, "grad_N_Ip") => {
-            "the gradient: the factor 1/h of each axis, and the product rule: slope of one axis, N of the others"
+        "N_Ip" if max_ent => of_max_ent(same, whole),
+        "N_Ip" => of_other_bases(same, whole),
+        _ if max_ent => {
+            "the gradient: the factor 1/h of each axis, J with r ⊗ r taken off, λ solved on this \
+             set of nodes"
         }
-        (true, true, true, _) => {
-            "the cut-off: a box or a ball (basis.support), R = h √(−ln(cut-off)/γ), with γ = βh² and the h of each axis"
-        }
-        (true, true, false, _) => {
-            "nodes are cut off before λ is solved, and the set stays the same while it is"
-        }
-        (true, false, false, _) => {
-            "λ is not solved on this set: the sum over all nodes divides each (32)"
-        }
-        (true, false, true, _) => {
-            "γ = βh² with the h of each axis, or λ is not that of (37) on this set"
-        }
-        (false, true, _, _) => {
-            "another cell, cells beyond the body that are missing or too many, or uGIMP's half-length, half of the particle's share of the cell"
-        }
-        (false, false, false, _) => "N is a product over the axes of functions that sum up to 1",
-        (false, false, true, _) => {
-            "N is made anew wherever the particle stands after its move, from its place in its cell"
+        _ => {
+            "the gradient: the factor 1/h of each axis, and the product rule: slope of one axis, N \
+             of the others"
         }
     };
     Some(format!("{which}, {sums}: {why}"))
+}
+
+/// Says what N of local max-ent suffers from: on the same nodes or others, whole if N sums up to
+/// what it should.
+fn of_max_ent(same: bool, whole: bool) -> &'static str {
+    match (same, whole) {
+        (false, true) => {
+            "the cut-off: a box or a ball (basis.support), R = h √(−ln(cut-off)/γ), with γ = βh² \
+             and the h of each axis"
+        }
+        (false, false) => {
+            "nodes are cut off before λ is solved, and the set stays the same while it is"
+        }
+        (true, false) => "λ is not solved on this set: the sum over all nodes divides each (32)",
+        (true, true) => "γ = βh² with the h of each axis, or λ is not that of (37) on this set",
+    }
+}
+
+/// Says what N of the other bases suffers from.
+fn of_other_bases(same: bool, whole: bool) -> &'static str {
+    match (same, whole) {
+        (false, _) => {
+            "another cell, cells beyond the body that are missing or too many, or uGIMP's \
+             half-length, half of the particle's share of the cell"
+        }
+        (true, false) => "N is a product over the axes of functions that sum up to 1",
+        (true, true) => "N is that of the particle's place in its cell",
+    }
 }
 
 /// Finds a particle that stands on a node, to round-off: which cell it belongs to is then chance.

@@ -143,11 +143,10 @@ impl TraceRecorder {
         match symbol {
             "N_Ip" => self.shapes(shape),
             "grad_N_Ip" => self.gradients(shape),
-            "lambda" if model.basis.has_multiplier() => {
-                let lambda = particle.lambda.iter().map(|known| known.lambda);
-                self.multipliers(lambda, &model.grid.h);
+            "lambda" => {
+                let known = particle.lambda.iter().filter(|_| model.basis.has_multiplier());
+                self.multipliers(known.map(|known| known.lambda), &model.grid.h);
             }
-            "lambda" => {}
             "m_I" => self.numbers(symbol, &node.m),
             "p_I" | "p_I_advanced" => self.vectors(symbol, &node.p),
             "v_I" => self.vectors(symbol, &node.v),

@@ -30,17 +30,7 @@ impl Report {
                 )
             }
         };
-        if self.each.len() > 1 {
-            text += "the first difference of every symbol, in this order:\n";
-        }
-        for Divergence { reference: r, theirs, cause, .. } in self.each.iter().skip(1) {
-            let node = r.node.map_or(String::new(), |node| format!(", node {node}"));
-            let cause = cause.as_ref().map_or(String::new(), |c| format!("; likely: {c}"));
-            text += &format!(
-                "  k = {}, step {}, {}, index {}{node}, component {}: {:?}, theirs {:?}{cause}\n",
-                r.k, r.step, r.symbol, r.index, r.component, r.value, theirs
-            );
-        }
+        text += &self.others();
         let before = |k: &&usize| self.divergence.as_ref().is_some_and(|d| **k < d.reference.k);
         if let Some(k) = self.missing_steps.iter().find(before) {
             text += &format!("it may come from before: nothing of k = {k} was compared\n");
@@ -52,6 +42,23 @@ impl Report {
         }
         if self.extra > 0 {
             text += &format!("not compared, since the reference has none: {}\n", self.extra);
+        }
+        text
+    }
+
+    /// Lists the first differences of the other symbols, if they were asked for.
+    fn others(&self) -> String {
+        let mut text = String::new();
+        if self.each.len() > 1 {
+            text += "the first difference of every symbol, in this order:\n";
+        }
+        for Divergence { reference: r, theirs, cause, .. } in self.each.iter().skip(1) {
+            let node = r.node.map_or(String::new(), |node| format!(", node {node}"));
+            let cause = cause.as_ref().map_or(String::new(), |c| format!("; likely: {c}"));
+            text += &format!(
+                "  k = {}, step {}, {}, index {}{node}, component {}: {:?}, theirs {:?}{cause}\n",
+                r.k, r.step, r.symbol, r.index, r.component, r.value, theirs
+            );
         }
         text
     }

@@ -5,7 +5,7 @@ use super::entry::Entry;
 
 /// A scheme shows in which step makes which symbol.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Scheme {
+pub enum TracedScheme {
     Newmark,
     EulerFirst,
     EulerLast,
@@ -17,42 +17,44 @@ pub enum Scheme {
     Kernel,
 }
 
-impl Scheme {
+impl TracedScheme {
     /// Finds the scheme of a trace.
-    pub fn of(entries: &[Entry]) -> Scheme {
+    pub fn of(entries: &[Entry]) -> TracedScheme {
         let has =
             |step: usize, symbol| entries.iter().any(|e| (e.step, e.symbol) == (step, symbol));
         if entries.iter().any(|e| e.symbol == "x_I") {
-            Scheme::Otm
+            TracedScheme::Otm
         } else if entries.iter().any(|e| e.symbol == "a_I") {
-            Scheme::GeneralizedAlpha
+            TracedScheme::GeneralizedAlpha
         } else if has(9, "v_p") || has(1, "v_p") {
-            Scheme::Newmark
+            TracedScheme::Newmark
         } else if has(3, "d_eps_p") {
-            Scheme::EulerFirst
+            TracedScheme::EulerFirst
         } else if has(7, "v_I") {
-            Scheme::EulerMapped
+            TracedScheme::EulerMapped
         } else if has(7, "d_eps_p") {
-            Scheme::EulerLast
+            TracedScheme::EulerLast
         } else {
-            Scheme::Kernel
+            TracedScheme::Kernel
         }
     }
 }
 
 /// Says what a symbol of a step usually suffers from.
-pub fn of_step(entry: &Entry, theirs: f64, scheme: Scheme) -> Option<&'static str> {
+pub fn of_step(entry: &Entry, theirs: f64, scheme: TracedScheme) -> Option<&'static str> {
     let place = (entry.symbol, entry.step);
-    if entry.k == 0 && entry.symbol == "d_eps_p" && scheme == Scheme::Newmark {
+    if entry.k == 0 && entry.symbol == "d_eps_p" && scheme == TracedScheme::Newmark {
         return Some("at k = 0 Δt is 0, and so is every increment");
     }
     given(place)
         .or_else(|| match scheme {
-            Scheme::Newmark => of_newmark(place, entry.value, theirs),
-            Scheme::EulerFirst | Scheme::EulerLast | Scheme::EulerMapped => of_euler(place, scheme),
-            Scheme::GeneralizedAlpha => of_generalized_alpha(place),
-            Scheme::Otm => of_otm(place),
-            Scheme::Kernel => None,
+            TracedScheme::Newmark => of_newmark(place, entry.value, theirs),
+            TracedScheme::EulerFirst | TracedScheme::EulerLast | TracedScheme::EulerMapped => {
+                of_euler(place, scheme)
+            }
+            TracedScheme::GeneralizedAlpha => of_generalized_alpha(place),
+            TracedScheme::Otm => of_otm(place),
+            TracedScheme::Kernel => None,
         })
         .or_else(|| of_all(entry.symbol))
 }
@@ -104,26 +106,28 @@ fn of_newmark(place: (&str, usize), right: f64, theirs: f64) -> Option<&'static 
     })
 }
 
-fn of_euler(place: (&str, usize), scheme: Scheme) -> Option<&'static str> {
+fn of_euler(place: (&str, usize), scheme: TracedScheme) -> Option<&'static str> {
     Some(match (place.0, scheme) {
         ("x_p", _) => "(21) moves with the advanced momentum: Δt Σ N (p_I + f_I Δt)/m_I",
         ("v_p", _) => {
             "(20) adds Δt Σ N f_I/m_I: increments of the nodes' velocity, not the velocity itself"
         }
         ("p_I_advanced", _) => "(18) adds the whole of f_I Δt in Euler's forms",
-        ("f_int_I", Scheme::EulerFirst) => {
+        ("f_int_I", TracedScheme::EulerFirst) => {
             "with stress-first the forces are of the new σ (time.stress_update)"
         }
         ("f_int_I", _) => {
             "with stress-last the forces are of σ and ρ of the step before (time.stress_update)"
         }
-        ("v_I", Scheme::EulerMapped) if place.1 == 7 => {
+        ("v_I", TracedScheme::EulerMapped) if place.1 == 7 => {
             "the momentum is mapped anew with the new v_p and the old N, and fixed nodes are set to 0 again"
         }
-        ("d_eps_p", Scheme::EulerFirst) => {
+        ("d_eps_p", TracedScheme::EulerFirst) => {
             "with stress-first the strain is of the mapped v_I, before the momentum is advanced"
         }
-        ("d_eps_p", Scheme::EulerLast) => "with stress-last the strain is of the advanced v_I",
+        ("d_eps_p", TracedScheme::EulerLast) => {
+            "with stress-last the strain is of the advanced v_I"
+        }
         ("d_eps_p", _) => "the strain is of the momentum mapped anew (time.stress_update)",
         _ => return None,
     })
