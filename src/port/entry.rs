@@ -132,7 +132,8 @@ impl TraceRecorder {
         }
     }
 
-    /// Writes what `symbol` has become in a state; loads are those of `t` (s).
+    /// Writes what `symbol` has become in a state; loads are those of `t` (s): one table, which is
+    /// why this function is long.
     pub fn symbol<const D: usize>(
         &mut self,
         symbol: &'static str,

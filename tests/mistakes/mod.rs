@@ -86,7 +86,7 @@ fn steps_of(method: Method) -> usize {
 }
 
 /// The trace of a port that marches with a mistake, or without one.
-pub fn marched<const D: usize>(scene: &Scene, steps: usize, seed: Option<&Seed<D>>) -> Vec<Entry> {
+fn marched<const D: usize>(scene: &Scene, steps: usize, seed: Option<&Seed<D>>) -> Vec<Entry> {
     let (mut model, mut state) = at_start::<D>(scene);
     if let Some(Seed::Start(change)) = seed {
         change(&mut model, &mut state);
@@ -147,15 +147,22 @@ fn printed<const D: usize>(mistake: &Mistake<D>, right: &[Entry], steps: usize) 
     }
 }
 
+/// What the port is of: its dimension, and what its scene says of basis, scheme, method and law.
+fn port_of(dimension: usize, sets: &[&str]) -> String {
+    let tells =
+        ["basis.", "method", "mass", "time.integrator", "time.stress", "time.kin", "body.law"];
+    let words = sets.iter().filter(|set| tells.iter().any(|key| set.starts_with(key)));
+    let words: Vec<&str> = words.filter_map(|set| set.split('=').nth(1)).collect();
+    let words = if words.is_empty() { "linear".to_string() } else { words.join(" ") };
+    format!("{dimension}D {words}")
+}
+
 /// A line of the table, and whether the place is right, and the cause.
-pub fn line<const D: usize>(mistake: &Mistake<D>) -> (String, bool, bool) {
+fn line<const D: usize>(mistake: &Mistake<D>) -> (String, bool, bool) {
     const FOUR: usize = 4;
     let right = trace::trace(&scene(mistake.base.text, mistake.sets), FOUR).unwrap();
     let theirs = printed(mistake, &right, FOUR);
-    let scheme =
-        mistake.sets.iter().filter(|set| !set.starts_with("grid") && !set.starts_with("body.len"));
-    let scheme: Vec<&str> = scheme.map(|set| set.split('=').nth(1).unwrap_or("")).collect();
-    let scene = format!("{}D {}", D, scheme.join(" ")).replace(',', ";");
+    let scene = port_of(D, mistake.sets);
     let name = mistake.name;
     let report = match compare(&right, &theirs.into(), STEPS, true) {
         Ok(report) => report,
@@ -219,7 +226,7 @@ fn shaken<const D: usize>(at: &At<D>, state: &mut State<D>) {
 }
 
 /// What `check` says of a right port whose numbers are shaken.
-pub fn alarm<const D: usize>(base: Base, sets: &[&str], steps: usize) -> Option<String> {
+fn alarm<const D: usize>(base: Base, sets: &[&str], steps: usize) -> Option<String> {
     let scene = scene(base.text, sets);
     let (mut steps, all) = (steps, scene.step_count() as usize);
     steps = steps.min(all);
