@@ -99,28 +99,33 @@ fn shifted(entry: &Entry, group: &Group) -> Option<String> {
 /// Finds causes at nodes that are held: which of them, and in which symbol it shows.
 fn held(entry: &Entry, own: f64, group: &Group) -> Option<String> {
     let of_node = ["v_I", "f_I", "p_I_advanced", "p_I", "f_int_I", "a_I"].contains(&entry.symbol);
-    let off: Vec<_> = group.off().collect();
+    let off: Vec<&Both> = group.off().collect();
     let kept = |both: &&Both| both.right == 0.0 && both.own != 0.0;
     let lost = |both: &&Both| both.right != 0.0 && both.own == 0.0;
     let nothing = group.list.iter().all(|both| both.own == 0.0);
-    if !of_node || nothing || off.is_empty() || !off.iter().all(|both| kept(&both) || lost(&both)) {
+    if !of_node || nothing || off.is_empty() {
+        return None;
+    }
+    // What is not fixed may be lost, but where only what particles bring is printed.
+    let brings = ["p_I", "f_int_I"].contains(&entry.symbol);
+    let fixed = group.traces.fixed();
+    let fits = |both: &&Both| match fixed.contains(&(both.entry.index, both.entry.component)) {
+        true => kept(both) || lost(both),
+        false => lost(both) && !brings,
+    };
+    if !off.iter().all(fits) {
         return None;
     }
     let set =
         "set to 0 in p_I (step of v_I) and in f_I, and in the components that the side holds alone";
-    let brings = ["p_I", "f_int_I"].contains(&entry.symbol);
-    if brings && !off.iter().all(|both| group.traces.is_fixed(both.entry)) {
-        return None;
-    }
-    Some(match (off.iter().any(|both| kept(both)), off.iter().any(|both| lost(both))) {
+    Some(match (off.iter().any(kept), off.iter().any(lost)) {
         (true, true) => format!("other components or sides are fixed than should be: {set}"),
         (false, _) if brings => format!(
             "{} is what the particles bring; a fixed node is set to 0 after it",
             entry.symbol
         ),
         (false, _) => format!("too much is fixed: a node is {set}"),
-        (true, _) if own == 0.0 => return None,
-        (true, _) if brings => return None,
+        (true, _) if own == 0.0 || brings => return None,
         (true, _) => format!("a fixed node keeps its momentum or force: it is {set}"),
     })
 }

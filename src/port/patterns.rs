@@ -51,13 +51,18 @@ impl<'a> Traces<'a> {
         self.reference.get(&(0, 0, symbol, 0, None, component)).copied()
     }
 
-    /// Tells whether a node is fixed: of what the particles bring it keeps nothing.
-    pub fn is_fixed(&self, entry: &Entry) -> bool {
-        let kept = if entry.symbol == "p_I" { "v_I" } else { "f_I" };
-        let here = |e: &&Entry| {
-            (e.k, e.symbol, e.index, e.component) == (entry.k, kept, entry.index, entry.component)
+    /// Lists the components (I, i) of nodes that are fixed: of what the particles bring them in
+    /// some time step they never keep anything.
+    pub fn fixed(&self) -> HashSet<(usize, usize)> {
+        let nonzero = |symbol: &'static str| {
+            let of = self.all.iter().filter(move |e| e.symbol == symbol && e.value != 0.0);
+            of.map(|e| (e.index, e.component)).collect::<HashSet<_>>()
         };
-        self.all.iter().find(here).is_some_and(|e| e.value == 0.0)
+        let without =
+            |brought, kept| nonzero(brought).difference(&nonzero(kept)).copied().collect();
+        let of_momentum: HashSet<(usize, usize)> = without("p_I", "v_I");
+        let of_force: HashSet<(usize, usize)> = without("f_int_I", "f_I");
+        of_momentum.into_iter().chain(of_force).collect()
     }
 
     /// Counts the dimensions of the scene, as far as the reference tells.
@@ -202,8 +207,15 @@ impl<'a> Group<'a> {
     pub fn of_a_factor(&self) -> Option<f64> {
         let largest = self.list.iter().max_by(|a, b| a.right.abs().total_cmp(&b.right.abs()))?;
         let factor = largest.own / largest.right;
-        let real = factor.is_finite() && factor != 0.0;
+        let real = factor.is_finite() && factor != 0.0 && self.tells(factor, |_| true);
         (real && self.all(|both| Some(factor * both.right))).then_some(factor)
+    }
+
+    /// Tells whether a factor says anything: there are two numbers to have it, or it has a name.
+    fn tells(&self, factor: f64, own: impl Fn(usize) -> bool) -> bool {
+        let some = self.list.iter().filter(|both| both.right != 0.0 && own(both.entry.component));
+        let plain = self.named(factor).trim_start_matches('−').contains('.');
+        some.count() > 1 || !plain
     }
 
     /// Finds one number that is added to all.
@@ -296,7 +308,9 @@ impl<'a> Group<'a> {
             Some(if largest.right == 0.0 { 1.0 } else { largest.own / largest.right })
         };
         let factors = (0..self.components()).map(factor).collect::<Option<Vec<_>>>()?;
-        if !self.all(|both| Some(factors[both.entry.component] * both.right)) {
+        let own = |both: &Both<'a>| Some(factors[both.entry.component] * both.right);
+        let tells = |(c, factor): (usize, &f64)| self.tells(*factor, |other| other == c);
+        if !self.all(own) || !factors.iter().enumerate().all(tells) {
             return None;
         }
         let mut odd = factors.iter().enumerate().filter(|(_, factor)| !near(**factor, 1.0));
