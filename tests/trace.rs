@@ -259,7 +259,7 @@ fn check_names_the_usual_cause() {
     // No node is fixed in a bar that flies: nothing of the kind is said.
     let flight = trace::trace(&scene(FREE_FLIGHT, &[]), 1).unwrap();
     let text = said(&flight, &kept("f_I"));
-    assert!(text.contains("f_I of (18)") && !text.contains("fixed"), "{text}");
+    assert!(text.contains("f_I of (18)") && !text.contains("a fixed node keeps"), "{text}");
 }
 
 /// With the consistent mass matrix p_I and f_I are the paper's, too: off the fixed node

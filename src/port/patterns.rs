@@ -80,6 +80,7 @@ impl<'a> Traces<'a> {
     /// Gives the last number before `entry` of the same symbol and index; for the advanced
     /// momentum the mapped one.
     fn before(&self, entry: &Entry) -> Option<f64> {
+        self.given("dt", 0)?; // the cases of a kernel do not follow each other
         if entry.symbol == "p_I_advanced" {
             let steps = (0..entry.step).rev();
             return steps

@@ -244,8 +244,7 @@ const GAMMA_4: &[&str] = &["basis.kind=lme", "basis.gamma=4"];
 /// A right port is let pass, whatever its last digits are: every basis and scheme on the bar,
 /// twenty time steps on 6 cells, among them uGIMP's touch and the light nodes of generalized-α;
 /// OTM, whose λ is nothing but an iteration's rest; the strip, the discs in rigid flight, the
-/// block. Without the floors, which a reference that does not give E has none of, there are
-/// alarms in all four.
+/// block.
 #[test]
 fn check_has_no_false_alarm() {
     let small = ["grid.cells=6", "time.cfl=0.3"];
@@ -276,7 +275,8 @@ fn check_has_no_false_alarm() {
     assert!(said.is_empty(), "{}", said.join("\n"));
 }
 
-/// Without floors a right port is not let pass where the symbol is nothing but round-off.
+/// Without floors, which a reference that does not give E has none of, a right port is not let
+/// pass where a symbol is nothing but round-off.
 #[test]
 fn check_needs_its_floors() {
     fn without<const D: usize>(base: Base, sets: &[&str]) -> &'static str {
