@@ -117,7 +117,7 @@ pub enum Command {
         /// Allowed difference, relative to the number
         #[arg(long, default_value_t = 1e-9, value_parser = fraction, allow_negative_numbers = true)]
         rtol: f64,
-        /// Allowed besides, relative to the largest value of the symbol in its time step
+        /// Allowed besides, relative to the largest value of the symbol in its time step, or its floor
         #[arg(long, default_value_t = 1e-12, value_parser = fraction, allow_negative_numbers = true)]
         atol: f64,
         /// Compare what both have, also where the port has only some numbers of a symbol, or more

@@ -11,12 +11,12 @@ use std::collections::{BTreeSet, HashMap};
 pub const FLOORS: [(&str, &str); 11] = [
     (
         "where",
-        "V is the largest |v_p| so far, m/m_I the mass of the heaviest node over that of node I, \
-         e_p = Δt V Σ_I |∇N_Ip| m/m_I of this table or the last and at least Δt V/h, M = λ + 2μ, F \
-         the largest force or floor of one; of V, h, x and ρ the values in the reference",
+        "V is the largest |v_p| so far, where F_p is kept at least h/Δt, q_I = h Σ_p m_p |∇N_Ip|/m_I from 1 to 1e15, W the largest mean of q_I that a \
+         particle's ∇N_Ip have weighed so far, e_p = Δt V Σ_I |∇N_Ip| q_I of this table or the last and at least Δt V W/h, M = λ + 2μ, F the largest \
+         force or floor of one, X = Σ_k Δt V W; of v_p, x, ρ the values in the reference",
     ),
-    ("v_I", "(V + Δt F/m) m/m_I"),
-    ("a_I", "(F/m) m/m_I, or the largest a_p in place of F/m"),
+    ("v_I", "(V + Δt F/m) q_I, at least V W; m is the mass of the heaviest node"),
+    ("a_I", "(F/m) q_I, or the largest a_p in place of F/m"),
     ("d_eps_p, G_p", "e_p"),
     ("F_p", "1, or the largest e_p so far"),
     ("rho_p", "ρ, or ρ times the largest e_p so far"),
@@ -26,9 +26,16 @@ pub const FLOORS: [(&str, &str); 11] = [
         "Σ_p |∇N_Ip| (m_p/ρ) times the floor of σ_p, or the largest of all three",
     ),
     ("a_p", "F over the smallest m_p"),
-    ("v_p, p_I, p_I_advanced", "V and Δt F/m_p; this times m; this and Δt F"),
-    ("x_p, x_I, N_Ip, grad_N_Ip, lambda", "the largest x, at least h; x/h; x/h²; 2γ x/h²"),
+    ("v_p, p_I, p_I_advanced", "V W + Δt F/m_p; m V W; m V W + Δt F"),
+    (
+        "x_p, x_I, N_Ip, m_I, grad_N_Ip, lambda",
+        "x, the largest place, at least h, plus X; x/h; m x/h; x/h²; 2γ x/h²",
+    ),
 ];
+
+/// Where more digits of a node's mass are lost than this, its velocity has none, and is one of
+/// those that its particles have.
+const MOST: f64 = 1e15;
 
 /// A scale is the largest value of a symbol in a time step, or its floor.
 #[derive(Default)]
@@ -74,9 +81,16 @@ impl Given {
 struct Running {
     V: f64,
     m_I: HashMap<usize, f64>,
+    /// The largest of them (kg).
+    m: f64,
+    /// h Σ_p m_p |∇N_Ip| of this table.
+    slopes: HashMap<usize, f64>,
     tables: [Vec<(usize, usize, f64)>; 2],
     e_p: HashMap<usize, f64>,
-    dv: f64,
+    /// The largest W so far, which what a light node has moved keeps for ever, and the sum of Δt V
+    /// W (m).
+    W: f64,
+    dx: f64,
 }
 
 impl Floors {
@@ -97,6 +111,7 @@ impl Floors {
         let mut running = Running::default();
         for k in by_step.keys().copied().collect::<BTreeSet<_>>() {
             running.look(&by_step[&k]);
+            running.add_slopes(&given);
             floors.of_step(k, &given, &mut running);
         }
         floors
@@ -117,24 +132,24 @@ impl Floors {
         let F = self.forces(k, given, running);
         let (dt, h) = (given.dt, given.h);
         let largest = |symbol| self.largest.get(&(k, symbol)).copied().unwrap_or(0.0);
-        let m = running.heaviest();
+        let (m, V) = (running.m, running.V * running.W);
         let a = if m > 0.0 { (F / m).max(largest("a_p")) } else { 0.0 };
         for I in running.m_I.keys() {
             let over = running.over_own(*I);
             self.of_index.insert((k, "a_I", *I), a * over);
-            self.of_index.insert((k, "v_I", *I), (running.V + dt * a) * over);
+            self.of_index.insert((k, "v_I", *I), V.max((running.V + dt * a) * over));
         }
         let a_p = given.m_p.values().copied().reduce(f64::min).map_or(0.0, |m_p| F / m_p);
-        running.dv = running.dv.max(dt * a_p);
-        let x = largest("x_p").max(largest("x_I")).max(h);
-        let V = running.V + running.dv;
+        running.dx += dt * V;
+        let x = largest("x_p").max(largest("x_I")).max(h) + running.dx;
         for (symbol, floor) in [
             ("a_p", a_p),
-            ("v_p", V),
+            ("v_p", V + dt * a_p),
             ("p_I", m * V),
             ("p_I_advanced", m * V + dt * F),
             ("x_p", x),
             ("x_I", x),
+            ("m_I", m * x / h),
             ("N_Ip", x / h),
             ("grad_N_Ip", x / (h * h)),
             ("lambda", 2.0 * given.gamma * x / (h * h)),
@@ -145,17 +160,24 @@ impl Floors {
 
     /// Makes the floors of what the material of time step `k` is strained by, and of its state.
     fn strains(&mut self, k: usize, given: &Given, running: &mut Running) {
-        let V = running.V + running.dv;
-        let even = given.dt * V / given.h;
+        if self.largest.contains_key(&(k, "F_p")) {
+            running.V = running.V.max(given.h / given.dt); // the digits of F are those of 1
+        }
+        let V = running.V;
+        running.W = running.W.max(1.0);
+        let even = given.dt * V * running.W / given.h;
         let mut e_p: HashMap<usize, f64> = given.m_p.keys().map(|p| (*p, even)).collect();
         for table in &running.tables {
-            let mut sums: HashMap<usize, f64> = HashMap::new();
+            let mut sums: HashMap<usize, [f64; 2]> = HashMap::new();
             for (p, I, slope) in table {
-                *sums.entry(*p).or_insert(0.0) += given.dt * V * slope * running.over_own(*I);
+                let [plain, over] = sums.entry(*p).or_insert([0.0; 2]);
+                *plain += slope;
+                *over += slope * running.over_own(*I);
             }
-            for (p, sum) in sums {
+            for (p, [plain, over]) in sums {
                 let e = e_p.entry(p).or_insert(0.0);
-                *e = e.max(sum);
+                *e = e.max(given.dt * V * over);
+                running.W = running.W.max(if plain > 0.0 { over / plain } else { 1.0 });
             }
         }
         for (p, e) in e_p {
@@ -203,15 +225,26 @@ impl Floors {
 }
 
 impl Running {
-    /// Gives the largest mass of a node (kg).
-    fn heaviest(&self) -> f64 {
-        self.m_I.values().copied().fold(0.0, f64::max)
-    }
-
-    /// Gives the largest mass of a node over that of node I; 1 for a node without mass.
+    /// Gives q_I = h Σ_p m_p |∇N_Ip| / m_I, by which a digit of the particles' places changes the
+    /// mass of a node, 1 at least and [`MOST`] at most, as for a node lighter than the heaviest by
+    /// that.
     fn over_own(&self, I: usize) -> f64 {
         let own = self.m_I.get(&I).copied().unwrap_or(0.0);
-        if own > 0.0 { self.heaviest() / own } else { 1.0 }
+        let moved = self.slopes.get(&I).copied().unwrap_or(0.0);
+        match own {
+            _ if own <= 0.0 => 1.0,
+            _ if own * MOST < self.m => MOST,
+            _ => (moved / own).clamp(1.0, MOST),
+        }
+    }
+
+    /// Adds up h m_p |∇N_Ip| at every node (kg).
+    fn add_slopes(&mut self, given: &Given) {
+        self.slopes.clear();
+        for (p, I, slope) in &self.tables[1] {
+            let m_p = given.m_p.get(p).copied().unwrap_or(0.0);
+            *self.slopes.entry(*I).or_insert(0.0) += given.h * m_p * slope;
+        }
     }
 
     /// Takes from the entries of a time step what runs on.
@@ -225,6 +258,7 @@ impl Running {
             let m_I = self.m_I.entry(entry.index).or_insert(0.0);
             *m_I = m_I.max(entry.value);
         }
+        self.m = self.m_I.values().copied().fold(0.0, f64::max);
         if of("grad_N_Ip").next().is_some() {
             let table = of("grad_N_Ip").filter_map(|e| Some((e.index, e.node?, e.value.abs())));
             self.tables = [std::mem::take(&mut self.tables[1]), table.collect()];
