@@ -310,13 +310,16 @@ fn surviving_mutants_are_explained() {
     assert!(survived.is_empty() && scores.len() == 6, "{survived:?}");
 }
 
-/// A directory of its own with the scenes, where commands may write.
+/// A directory of its own with the scenes, those of the kit too, where commands may write.
 fn directory(name: &str) -> PathBuf {
     let dir = program::directory(name);
-    fs::create_dir_all(dir.join("data/scenes")).unwrap();
-    for entry in fs::read_dir(root().join("data/scenes")).unwrap() {
-        let entry = entry.unwrap();
-        fs::copy(entry.path(), dir.join("data/scenes").join(entry.file_name())).unwrap();
+    for folder in ["data/scenes", "data/conformance"] {
+        fs::create_dir_all(dir.join(folder)).unwrap();
+        for entry in fs::read_dir(root().join(folder)).unwrap().map(Result::unwrap) {
+            if entry.path().extension().is_some_and(|ending| ending == "toml") {
+                fs::copy(entry.path(), dir.join(folder).join(entry.file_name())).unwrap();
+            }
+        }
     }
     dir
 }

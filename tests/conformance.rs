@@ -4,6 +4,7 @@
 
 use crate::support::kit::texts::{Ending, MUST_FAIL};
 use crate::support::kit::{folder, kit, manifest};
+use crate::support::*;
 use lme_mpm::run::{parse, run};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -99,6 +100,33 @@ fn conformance_must_fail() {
                 assert!(stopped.broken.moment.step < 5, "{}", stopped.broken);
             }
             (_, ends) => panic!("not {ends:?}:\n{text}"),
+        }
+    }
+}
+
+/// The orders in `orders.csv` are those of the bar `data/scenes/vibration.toml` at 0.8 L/c on 10,
+/// 20 and 40 cells with time steps so small that they do not show.
+#[test]
+fn conformance_orders_are_measured() {
+    let text = fs::read_to_string(folder().join("level-4/orders.csv")).unwrap();
+    let cells = [10, 20, 40];
+    let h = cells.map(|n| 1.0 / f64::from(n));
+    for mass in MASSES {
+        let errors = cells.map(|n| {
+            let (grid, cfl) =
+                (format!("grid.cells={n}"), format!("time.cfl={:?}", 4e-4 * f64::from(n)));
+            let sets =
+                [mass.sets, &["time.end=0.8", "vibration.velocity=1e-7", &grid, &cfl]].concat();
+            let scene = scene(VIBRATION, &sets);
+            field_errors(&scene, &finished(&scene))
+        });
+        let Each { v, sigma, u } = orders(&h, &errors);
+        for (quantity, order) in [("velocity", v), ("displacement", u), ("stress", sigma)] {
+            let start = format!("linear,{},{quantity},", mass.name);
+            let band = text.lines().find_map(|line| line.strip_prefix(&start)).unwrap();
+            let (lowest, highest) = band.split_once(',').unwrap();
+            let inside = lowest.parse::<f64>().unwrap()..=highest.parse::<f64>().unwrap();
+            assert!(inside.contains(&order.slope), "{start} {}", order.slope);
         }
     }
 }

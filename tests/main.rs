@@ -28,6 +28,7 @@ mod loads;
 mod locking;
 mod mass;
 mod matrix;
+mod mistakes;
 mod one_bar;
 mod orders;
 mod otm;

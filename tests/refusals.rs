@@ -492,7 +492,7 @@ fn bad_traces() {
     assert_fails(&trace(&loads), 1, &["at step 0", "f_ext_I of node 0 is not a finite number"]);
     let light = ["body.density=1e-300", "body.youngs_modulus=1e-300", "traction.right=1e308"];
     let light: Vec<&str> = light.iter().flat_map(|set| ["--set", set]).collect();
-    assert_fails(&trace(&[&["--steps", "0"], &light[..]].concat()), 1, &["v_p of particle 76"]);
+    assert_fails(&trace(&[&["--steps", "0"], &light[..]].concat()), 1, &["a_p of particle 76"]);
     assert_eq!(files(&dir), ["mine.toml"]);
     assert_eq!(fs::read(&mine).unwrap(), before);
 

@@ -1,7 +1,7 @@
 //! Traces, and their comparison.
 
 use crate::support::*;
-use lme_mpm::port::check::{self, Tolerance, compare, ulps};
+use lme_mpm::port::check::{self, Asked, Tolerance, compare, compare_as, ulps};
 use lme_mpm::port::trace::{self, Entry, hex, number, trace_in};
 use lme_mpm::scene::Scene;
 use lme_mpm::scene::fault::Fault;
@@ -238,14 +238,14 @@ fn check_names_the_usual_cause() {
         (&linear, Box::new(turned("grad_N_Ip")), "the sign of ∇N"),
         (&lme, Box::new(turned("lambda")), "the sign of λ"),
         (&linear, Box::new(turned("f_int_I")), "f_int = −Σ σ ∇N m/ρ"),
-        (&linear, Box::new(shifted(1)), "the numbering is off by one"),
-        (&linear, Box::new(shifted(9)), "the numbering is off by one"),
+        (&linear, Box::new(shifted(1)), "numbered off by one"),
+        (&linear, Box::new(shifted(9)), "numbered off by one"),
         (&linear, Box::new(nodes_from_one), "nodes are numbered off by one"),
         (&lme, Box::new(nodes_from_one), "nodes are numbered off by one"),
-        (&linear, Box::new(scaled("N_Ip", 2)), "wherever the particle stands"),
-        (&lme, Box::new(scaled("N_Ip", 2)), "cut-off"),
+        (&linear, Box::new(scaled("N_Ip", 2)), "all have the factor 1.5"),
+        (&lme, Box::new(scaled("N_Ip", 2)), "all have the factor 1.5"),
         (&linear, Box::new(scaled("dt", 0)), "Δt = T/n"),
-        (&linear, Box::new(scaled("x_p", 0)), "the start: h = L/cells"),
+        (&linear, Box::new(scaled("x_p", 0)), "the start: each particle"),
         (&linear, Box::new(scaled("x_p", 1)), "(27) moves with the nodes"),
         (&linear, Box::new(scaled("v_p", 1)), "(28) is half a step"),
         (&linear, Box::new(scaled("v_p", 9)), "(29) is half a step"),
@@ -259,7 +259,7 @@ fn check_names_the_usual_cause() {
     // No node is fixed in a bar that flies: nothing of the kind is said.
     let flight = trace::trace(&scene(FREE_FLIGHT, &[]), 1).unwrap();
     let text = said(&flight, &kept("f_I"));
-    assert!(text.contains("f_I of (18)") && !text.contains("fixed"), "{text}");
+    assert!(text.contains("f_I of (18)") && !text.contains("a fixed node keeps"), "{text}");
 }
 
 /// With the consistent mass matrix p_I and f_I are the paper's, too: off the fixed node
@@ -328,4 +328,39 @@ fn trace_of_finite_strain() {
             assert!(state.particle.sigma.iter().any(|sigma| sigma[0].abs() > 1e5), "{name}");
         }
     }
+}
+
+/// `skip` leaves a symbol out, `from` begins later, `all` finds the first difference of every
+/// symbol; places are compared before what is made at them.
+#[test]
+fn check_does_what_is_asked() {
+    let all = reference(&["grid.cells=4"], 3);
+    let mut wrong = all.clone();
+    for entry in &mut wrong {
+        if (entry.k, entry.symbol) == (1, "sigma_p") || (entry.k, entry.symbol) == (3, "x_p") {
+            entry.value *= 1.5;
+        }
+    }
+    let asked = Asked::whole(USUAL, false);
+    let found = |asked: &Asked| {
+        let report = compare_as(&all, &wrong.clone().into(), asked).unwrap();
+        let each = report.each.iter().map(|d| (d.reference.k, d.reference.symbol));
+        (each.collect::<Vec<_>>(), report)
+    };
+    assert_eq!(found(&asked).0, [(1, "sigma_p")]);
+    let skip = Asked { skip: vec!["sigma_p".into()], ..asked.clone() };
+    assert_eq!(found(&skip).0, [(3, "x_p")]);
+    assert_eq!(found(&Asked { from: 2, ..asked.clone() }).0, [(3, "x_p")]);
+    let (each, report) = found(&Asked { all: true, ..asked });
+    assert_eq!(each, [(1, "sigma_p"), (3, "x_p")]);
+    assert!(report.text().contains("every symbol") && report.text().contains("k = 3, step 1, x_p"));
+    // At the start of OTM all stands in step 0.
+    let otm = reference(&["grid.cells=4", "method=otm", "basis.kind=lme", "basis.gamma=4"], 1);
+    let moved = |e: &Entry| match e.symbol {
+        "x_p" | "N_Ip" | "m_I" => Entry { value: e.value * 1.01, ..e.clone() },
+        _ => e.clone(),
+    };
+    let moved: Vec<Entry> = otm.iter().map(moved).collect();
+    let report = compare(&otm, &moved.into(), USUAL, false).unwrap();
+    assert_eq!(report.divergence.unwrap().reference.symbol, "x_p");
 }

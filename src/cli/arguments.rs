@@ -4,6 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use lme_mpm::method::basis::{Degree, Support};
+use lme_mpm::port::trace::SYMBOLS;
 use lme_mpm::scene::SHIPPED;
 use lme_mpm::study::measured::Criterion;
 use std::path::PathBuf;
@@ -133,12 +134,21 @@ pub enum Command {
         /// Allowed difference, relative to the number
         #[arg(long, default_value_t = 1e-9, value_parser = fraction, allow_negative_numbers = true)]
         rtol: f64,
-        /// Allowed besides, relative to the largest value of the symbol in its time step
+        /// Allowed besides, relative to the largest value of the symbol in its time step, or its floor
         #[arg(long, default_value_t = 1e-12, value_parser = fraction, allow_negative_numbers = true)]
         atol: f64,
         /// Compare what both have, also where the port has only some numbers of a symbol, or more
         #[arg(long)]
         part: bool,
+        /// Leave this symbol out; may be given more than once
+        #[arg(long, value_name = "SYMBOL", value_parser = PossibleValuesParser::new(SYMBOLS.map(|known| known.0)))]
+        skip: Vec<String>,
+        /// Begin with this time step
+        #[arg(long, value_name = "K", default_value_t = 0)]
+        from: usize,
+        /// List the first difference of every symbol, not only the first of all
+        #[arg(long)]
+        all: bool,
     },
     /// Measure the trade of speed for accuracy on a scene
     ///

@@ -12,13 +12,13 @@ use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 use lme_mpm::method::basis::{Basis, Degree, Support};
 use lme_mpm::output::{files, report};
-use lme_mpm::port::check::{self, Tolerance};
+use lme_mpm::port::check::{self, Asked, Tolerance};
 use lme_mpm::port::points::{self, Points};
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
 use lme_mpm::scene::{SHIPPED, declare, shipped};
 use lme_mpm::study::ranking::Question;
-use run::{Asked, Show, built_in, placed, run};
+use run::{Request, Show, built_in, placed, run};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -48,7 +48,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Fault> {
             let show = show[if quiet { 2 } else { usize::from(all) }];
             let budget = machine::budget(max_time.is_none());
             let read = predicting(quiet, || files::scene(&scene, &set, &budget))?;
-            let warnings = run(&read, Asked { out, show, end })
+            let warnings = run(&read, Request { out, show, end })
                 .map_err(|fault| placed(fault, &read, &scene, &set))?;
             terminal::warn(&warnings, strict)
         }
@@ -59,8 +59,9 @@ fn dispatch(command: Option<Command>) -> Result<(), Fault> {
         Some(Command::Trace { scene, steps, set, hex, out }) => {
             trace(&scene, steps, &set, hex, out.as_deref())
         }
-        Some(Command::Check { reference, theirs, rtol, atol, part }) => {
-            compare(&reference, &theirs, Tolerance { relative: rtol, absolute: atol }, part)
+        Some(Command::Check { reference, theirs, rtol, atol, part, skip, from, all }) => {
+            let tolerance = Tolerance { relative: rtol, absolute: atol };
+            compare(&reference, &theirs, &Asked { tolerance, part, skip, from, all })
         }
         Some(Command::Trade(arguments)) => verdicts::trade(&arguments),
         Some(Command::Recommend { scene, error, quantity, out, jobs }) => {
@@ -197,7 +198,7 @@ fn writable(input: &Path, out: &Path) -> Result<(), Fault> {
     files::prepare(out.parent().filter(|p| *p != Path::new("")).unwrap_or(Path::new(".")))
 }
 
-fn compare(reference: &Path, theirs: &Path, tolerance: Tolerance, part: bool) -> Result<(), Fault> {
+fn compare(reference: &Path, theirs: &Path, asked: &Asked) -> Result<(), Fault> {
     if reference == Path::new("-") && theirs == Path::new("-") {
         return Err(Fault::Argument {
             argument: "THEIRS",
@@ -207,7 +208,7 @@ fn compare(reference: &Path, theirs: &Path, tolerance: Tolerance, part: bool) ->
     }
     let read = |path: &Path| check::read(&path.display().to_string(), open(path)?);
     let (reference, theirs) = (read(reference)?, read(theirs)?);
-    let report = check::compare(&reference.entries, &theirs, tolerance, part)?;
+    let report = check::compare_as(&reference.entries, &theirs, asked)?;
     match report.divergence {
         None => print_bytes(report.text().as_bytes()),
         Some(_) => Err(Fault::Differs(report.text().trim_end().to_string())),

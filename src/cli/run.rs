@@ -26,11 +26,11 @@ pub enum Show {
 
 pub fn built_in() -> Result<(), Fault> {
     let scene = lme_mpm::run::parse("dyka", "dyka.toml (built in)", DYKA, &[])?;
-    terminal::warn(&run(&scene, Asked { out: None, show: Show::Chief, end: None })?, false)
+    terminal::warn(&run(&scene, Request { out: None, show: Show::Chief, end: None })?, false)
 }
 
 /// This is what a run is asked for besides its scene.
-pub struct Asked {
+pub struct Request {
     /// Where to write; out/<scene name> without it.
     pub out: Option<PathBuf>,
     pub show: Show,
@@ -39,8 +39,8 @@ pub struct Asked {
 }
 
 /// Runs a scene, writes its results, and gives what they are warned of.
-pub fn run(scene: &Scene, asked: Asked) -> Result<Vec<Warning>, Fault> {
-    let Asked { out, show, end } = asked;
+pub fn run(scene: &Scene, asked: Request) -> Result<Vec<Warning>, Fault> {
+    let Request { out, show, end } = asked;
     let dir = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
     let interrupted = terminal::interrupted()?;
     let steps = scene.sizes().2 as u64;

@@ -129,6 +129,7 @@ impl<const D: usize> Grid<D> {
         (i as i64 - self.before[d] as i64) as f64 * self.h[d]
     }
 
+    // ANCHOR: locate
     /// Finds the cell that holds `x` (m); `None` outside the grid or for NaN.
     ///
     /// A point on a face belongs to the cell above it, except on the grid's
@@ -161,4 +162,5 @@ impl<const D: usize> Grid<D> {
         }
         Some(Located { cell, xi })
     }
+    // ANCHOR_END: locate
 }

@@ -2,6 +2,7 @@
 
 use super::choice::Method;
 
+// ANCHOR: points
 /// Lists the `n` points of a cell along one axis: place (0 to 1) and length (in units of the
 /// cell). MPM: equal distances. OTM: Gauss's points, 1 to 4, which integrate polynomials up to
 /// the degree 2n − 1.
@@ -30,3 +31,4 @@ pub fn points(method: Method, n: usize) -> Vec<[f64; 2]> {
         }
     }
 }
+// ANCHOR_END: points

@@ -1,12 +1,15 @@
-//! Says what a difference usually comes from, and where the book tells more.
+//! Says what a difference usually comes from, and where the book tells more: patterns first,
+//! then what a step of a scheme usually suffers from.
 
-use super::entry::{Address, Entry, SYMBOLS, address};
-use std::collections::HashMap;
+use super::entry::{Entry, SYMBOLS};
+use super::patterns::{Both, Group, Traces, near};
+use super::precision;
+use super::scheme::{TracedScheme, of_step};
 
 /// Gives the equation and its place in the book, by symbol and, in Newmark's scheme, by step.
 pub fn source(entry: &Entry) -> (&'static str, &'static str) {
     match (entry.symbol, entry.step) {
-        ("x_p" | "v_p", 0) => ("the start", "dyka-bar.html"),
+        ("x_p" | "v_p", 0) => ("the start", "grid.html#particles"),
         ("x_p", 1) => ("(27), step 1", "algorithm.html#step-1"),
         ("v_p", 1) => ("(28), step 1", "algorithm.html#step-1"),
         ("p_I", 3) => ("step 3", "algorithm.html#step-3"),
@@ -20,155 +23,199 @@ pub fn source(entry: &Entry) -> (&'static str, &'static str) {
     }
 }
 
-/// Two traces are looked up side by side.
-pub struct Traces<'a> {
-    pub reference: &'a HashMap<Address, f64>,
-    pub theirs: &'a HashMap<Address, f64>,
+/// Gives the likely cause of a difference at `entry`, with what is as small as `nothing`.
+pub fn of(entry: &Entry, theirs: &[Entry], nothing: f64, traces: &Traces) -> Option<String> {
+    let group = traces.group(entry, nothing);
+    let scheme = TracedScheme::of(traces.all);
+    let own = group.list.iter().find(|both| both.entry == entry)?.own;
+    let usual = |own: f64| of_step(entry, own, scheme).map(str::to_string);
+    let with_usual = |found: String| match usual(own) {
+        Some(usual) => format!("{found}; {usual}"),
+        None => found,
+    };
+    let added = group.increments();
+    precision::of(theirs, &group.list)
+        .or_else(|| group.of_another_time())
+        .or_else(|| held(entry, own, &group))
+        .or_else(|| group.of_nothing().or_else(|| group.of_a_sum()).map(with_usual))
+        .or_else(|| group.of_swapped_axes())
+        .or_else(|| {
+            group.of_a_factor().filter(|f| near(*f, -1.0)).map(|_| turned(entry.symbol).into())
+        })
+        .or_else(|| group.of_another_order())
+        .or_else(|| group.of_another_symbol())
+        .or_else(|| scaled(entry, &group, scheme))
+        .or_else(|| group.of_component_factors())
+        .or_else(|| shifted(entry, &group))
+        .or_else(|| sights(entry, &group))
+        .or_else(|| precision::by_size(added.as_ref().map_or(&group.list[..], |added| &added.list)))
+        .or_else(|| usual(own))
 }
 
-impl Traces<'_> {
-    /// Gives the reference's value at the place of `entry`, for another symbol, step or index.
-    fn at(&self, entry: &Entry) -> Option<f64> {
-        self.reference.get(&address(entry)).copied()
+/// Finds a factor, in all that is there or in what this step has added, and says what it is
+/// usually.
+fn scaled(entry: &Entry, group: &Group, scheme: TracedScheme) -> Option<String> {
+    if let Some(factor) = group.of_a_factor() {
+        let usual = of_step(entry, factor * entry.value, scheme);
+        let usual = usual.map_or(String::new(), |usual| format!("; {usual}"));
+        return Some(format!("all have the factor {}{usual}", group.named(factor)));
     }
-
-    fn theirs_at(&self, entry: &Entry) -> Option<f64> {
-        self.theirs.get(&address(entry)).copied()
+    let added = group.increments()?;
+    let symbol = entry.symbol;
+    if let Some(factor) = added.of_a_factor() {
+        let usual = of_step(entry, factor * entry.value, scheme);
+        let usual = usual.map_or(String::new(), |usual| format!("; {usual}"));
+        return Some(format!(
+            "what this step adds to {symbol} has the factor {}{usual}",
+            added.named(factor)
+        ));
     }
+    let of_added = |words: String| format!("in what this step adds to {symbol} {words}");
+    added.of_swapped_axes().or_else(|| added.of_component_factors()).map(of_added)
 }
 
-fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= 1e-6 * a.abs().max(b.abs())
-}
-
-/// Gives the likely cause of a difference at `entry`, where the port has `theirs`.
-pub fn of(entry: &Entry, theirs: f64, reference: &[Entry], traces: Traces) -> Option<&'static str> {
-    let by_value = if entry.step == 0 { None } else { value_tells(entry, theirs, reference) };
-    by_value.or_else(|| numbering(entry, theirs, &traces)).or_else(|| match entry.node {
-        Some(_) => pair(entry, reference),
-        None => symbol_tells(entry, theirs).or_else(|| {
-            let twice = entry.value != 0.0
-                && (near(theirs, 2.0 * entry.value) || near(theirs, 0.5 * entry.value));
-            twice.then_some("a factor of two")
-        }),
-    })
-}
-
-/// Finds causes that show in the two values: a fixed node, a sign.
-fn value_tells(entry: &Entry, theirs: f64, reference: &[Entry]) -> Option<&'static str> {
-    let value = entry.value;
-    let kept = value == 0.0 && ["v_I", "f_I", "p_I_advanced"].contains(&entry.symbol);
-    let lost = theirs == 0.0 && ["p_I", "f_int_I"].contains(&entry.symbol);
-    if (kept || lost) && is_fixed(entry, reference) {
-        return Some(match entry.symbol {
-            "p_I" => "p_I is what the particles bring; a fixed node is set to 0 after it",
-            "f_int_I" => "f_int_I is what the particles bring; a fixed node is set to 0 in f_I",
-            _ => "a fixed node keeps its momentum or force: set it to 0 (step 4, step 7)",
-        });
-    }
-    if value == 0.0 || !near(theirs, -value) {
-        return None;
-    }
-    Some(match entry.symbol {
+/// Says what a wrong sign is.
+fn turned(symbol: &str) -> &'static str {
+    match symbol {
         "f_int_I" | "f_I" => "the sign of the internal force: f_int = −Σ σ ∇N m/ρ",
         "grad_N_Ip" => "the sign of ∇N: it points to where N grows, towards the node",
         "lambda" => "the sign of λ: p_I ∝ exp(−β |x − x_I|² + λ·(x − x_I))",
         _ => "the sign",
+    }
+}
+
+/// Finds one number that is added to all places: another origin.
+fn shifted(entry: &Entry, group: &Group) -> Option<String> {
+    let offset = group.of_an_offset()?;
+    let place = ["x_p", "x_I"].contains(&entry.symbol);
+    place.then(|| {
+        format!(
+            "all are shifted by {}: places are measured from the body's lower corner",
+            group.named(offset)
+        )
     })
 }
 
-/// Tells whether a node is fixed: it keeps nothing of what particles bring.
-fn is_fixed(entry: &Entry, reference: &[Entry]) -> bool {
-    let of_node = |symbol: &'static str| {
-        let here = (entry.index, entry.component);
-        reference.iter().filter(move |e| e.symbol == symbol && (e.index, e.component) == here)
+/// Finds causes at nodes that are held: which of them, and in which symbol it shows.
+fn held(entry: &Entry, own: f64, group: &Group) -> Option<String> {
+    let of_node = ["v_I", "f_I", "p_I_advanced", "p_I", "f_int_I", "a_I"].contains(&entry.symbol);
+    let off: Vec<&Both> = group.off().collect();
+    let kept = |both: &&Both| both.right == 0.0 && both.own != 0.0;
+    let lost = |both: &&Both| both.right != 0.0 && both.own == 0.0;
+    let nothing = group.list.iter().all(|both| both.own == 0.0);
+    if !of_node || nothing || off.is_empty() {
+        return None;
+    }
+    // What is not fixed may be lost, but where only what particles bring is printed.
+    let brings = ["p_I", "f_int_I"].contains(&entry.symbol);
+    let fixed = group.traces.fixed();
+    let fits = |both: &&Both| match fixed.contains(&(both.entry.index, both.entry.component)) {
+        true => kept(both) || lost(both),
+        false => lost(both) && !brings,
     };
-    let some = |symbol| of_node(symbol).any(|e| e.value != 0.0);
-    (some("p_I") && !some("v_I")) || (some("f_int_I") && !some("f_I"))
-}
-
-/// Finds particles or nodes that are counted from 1, or nodes from another end.
-fn numbering(entry: &Entry, theirs: f64, traces: &Traces) -> Option<&'static str> {
-    let Some(node) = entry.node else {
-        // This value and the next are their neighbours' in the reference.
-        let moved = |by: usize, towards: isize| {
-            let index = entry.index.checked_add(by)?;
-            let here = Entry { index, ..entry.clone() };
-            let there = Entry { index: index.checked_add_signed(towards)?, ..entry.clone() };
-            let (own, right) = (traces.theirs_at(&here)?, traces.at(&here)?);
-            Some(near(own, traces.at(&there)?) && !near(own, right))
-        };
-        let all_moved = |towards| (0..2).all(|by| moved(by, towards) == Some(true));
-        return (all_moved(1) || all_moved(-1)).then_some("the numbering is off by one");
-    };
-    let beside = [node.checked_sub(1), node.checked_add(1)].into_iter().flatten();
-    let moved = |node: usize| {
-        let there = traces.theirs_at(&Entry { node: Some(node), ..entry.clone() });
-        there.is_some_and(|x| near(x, entry.value) && !near(x, theirs))
-    };
-    beside.into_iter().any(moved).then_some("nodes are numbered off by one")
-}
-
-/// Finds causes of shape functions and gradients.
-fn pair(entry: &Entry, reference: &[Entry]) -> Option<&'static str> {
-    let max_ent = reference.iter().any(|e| e.symbol == "lambda");
-    Some(match (entry.symbol, max_ent) {
-        _ if entry.value == 0.0 && max_ent => {
-            "the particle does not see that node: numbering off by one, cut-off, or γ = βh²"
-        }
-        _ if entry.value == 0.0 => {
-            "the particle does not see that node: another cell, or numbering"
-        }
-        ("grad_N_Ip", true) => {
-            "the gradient: is the factor 1/h there, and is λ solved on this set of nodes?"
-        }
-        ("grad_N_Ip", false) => "the gradient: is the factor 1/h there?",
-        (_, true) => "the set of nodes (cut-off), γ = βh², or λ not converged on this set",
-        (_, false) => "N is made anew wherever the particle stands after its move",
+    if !off.iter().all(fits) {
+        return None;
+    }
+    let set =
+        "set to 0 in p_I (step of v_I) and in f_I, and in the components that the side holds alone";
+    Some(match (off.iter().any(kept), off.iter().any(lost)) {
+        (true, true) => format!("other components or sides are fixed than should be: {set}"),
+        (false, _) if brings => format!(
+            "{} is what the particles bring; a fixed node is set to 0 after it",
+            entry.symbol
+        ),
+        (false, _) => format!("too much is fixed: a node is {set}"),
+        (true, _) if own == 0.0 || brings => return None,
+        (true, _) => format!("a fixed node keeps its momentum or force: it is {set}"),
     })
 }
 
-/// Says what a symbol usually suffers from: one table, which is why this function is long.
-fn symbol_tells(entry: &Entry, theirs: f64) -> Option<&'static str> {
-    Some(match (entry.symbol, entry.step) {
-        ("dt", _) => "Δt = T/n, n the next whole number from T c/(CFL h) up",
-        ("x_p", 0) => {
-            "the start: h = L/cells, each particle in the middle of its equal share of a cell, \
-             numbers of 64 bits"
+/// Finds nodes that a particle of the port sees and that of the reference does not, or the other
+/// way round; and sums of N and ∇N.
+fn sights(entry: &Entry, group: &Group) -> Option<String> {
+    entry.node?;
+    if entry.k > 0
+        && let Some(words) = on_an_edge(entry, group)
+    {
+        return Some(words);
+    }
+    let more = group.list.iter().any(|both| both.right == 0.0 && both.own != 0.0);
+    let fewer = group.list.iter().any(|both| both.right != 0.0 && both.own == 0.0);
+    let here = |e: &Entry| (e.index, e.component) == (entry.index, entry.component);
+    let row = || group.list.iter().filter(|both| here(both.entry));
+    let sum = |of: &dyn Fn(&Both) -> f64| row().map(of).sum::<f64>();
+    let size = sum(&|both| both.right.abs());
+    let whole = (sum(&|both| both.own) - sum(&|both| both.right)).abs() < 1e-9 * size;
+    let same = !more && !fewer;
+    if same && whole && precision::by_size(&group.list).is_some() {
+        return None;
+    }
+    let which = match (more, fewer) {
+        (true, true) => "particles see other nodes",
+        (true, false) => "particles see more nodes",
+        (false, true) => "particles see fewer nodes",
+        (false, false) => "particles see the right nodes",
+    };
+    let sums = if whole { "and N still sums up to 1" } else { "and N no longer sums up to 1" };
+    let max_ent = group.traces.all.iter().any(|e| e.symbol == "lambda");
+    let why = match entry.symbol {
+        "N_Ip" if same && whole && entry.k > 0 => {
+            "N was right before: it is made anew wherever the particle stands after its move, with \
+             OTM on the nodes where they stand now"
         }
-        ("v_p", 0) => "the start: the velocity of the region that the particle stands in",
-        ("x_p", 1) => {
-            "(27) moves with the nodes, not with v_p: Σ N (Δt p_I/m_I + ½ Δt² f_I/m_I), p_I as \
-             step 8 has left it, N of the step before"
+        "N_Ip" if max_ent => of_max_ent(same, whole),
+        "N_Ip" => of_other_bases(same, whole),
+        _ if max_ent => {
+            "the gradient: the factor 1/h of each axis, J with r ⊗ r taken off, λ solved on this \
+             set of nodes"
         }
-        ("v_p", 1) => "(28) is half a step, ½ Δt Σ N f_I/m_I, with f_I and N of the step before",
-        ("v_p", 9) => "(29) is half a step, ½ Δt Σ N f_I/m_I, with the new f_I and the new N",
-        ("v_p" | "x_p", _) => "shares of nodal values: which of them, and N of which place?",
-        ("rms", _) => "(39) as printed has no square: √(1/N Σ (φ − φ̂)²)",
-        ("v" | "sigma" | "u", _) => {
-            "the ends: a fixed one turns the invariant's sign, a free one does not, and both give \
-             back the whole wave"
+        _ => {
+            "the gradient: the factor 1/h of each axis, and the product rule: slope of one axis, N \
+             of the others"
         }
-        ("lambda", _) => "λ: γ = βh² (not β/h²), solved on the set that the cut-off leaves",
-        ("m_I", _) => "the mass of a particle is ρ times its share of the cell",
-        ("p_I", _) => "p_I = Σ m v N with the velocity that the particles have by now",
-        ("f_int_I", _) => {
-            "σ and ρ are of another moment (time.stress_update), or the volume is not m/ρ"
+    };
+    Some(format!("{which}, {sums}: {why}"))
+}
+
+/// Says what N of local max-ent suffers from: on the same nodes or others, whole if N sums up to
+/// what it should.
+fn of_max_ent(same: bool, whole: bool) -> &'static str {
+    match (same, whole) {
+        (false, true) => {
+            "the cut-off: a box or a ball (basis.support), R = h √(−ln(cut-off)/γ), with γ = βh² \
+             and the h of each axis"
         }
-        ("v_I", _) => "v_I = p_I/m_I; or is one of the two with the consistent mass matrix?",
-        ("rho_p", _) => {
-            "the density is updated with the strain increment of this step: ρ/(1 + tr Δε)"
+        (false, false) => {
+            "nodes are cut off before λ is solved, and the set stays the same while it is"
         }
-        ("d_eps_p", _) if entry.k == 0 => "at k = 0 Δt is 0, and so is every increment",
-        ("d_eps_p", _) if entry.value == 0.0 && theirs != 0.0 => {
-            "all nodes move alike: one without mass has no velocity, and moves with the others (16)"
+        (true, false) => "λ is not solved on this set: the sum over all nodes divides each (32)",
+        (true, true) => "γ = βh² with the h of each axis, or λ is not that of (37) on this set",
+    }
+}
+
+/// Says what N of the other bases suffers from.
+fn of_other_bases(same: bool, whole: bool) -> &'static str {
+    match (same, whole) {
+        (false, _) => {
+            "another cell, cells beyond the body that are missing or too many, or uGIMP's \
+             half-length, half of the particle's share of the cell"
         }
-        ("d_eps_p", _) => {
-            "the nodal velocity that the strain is taken from: before or after the momentum is \
-             advanced, or mapped anew (time.stress_update)"
-        }
-        ("sigma_p", _) => "σ grows by Δσ = λ tr(Δε) 1 + 2μ Δε, with Δε of this step",
-        ("p_I_advanced", 8) => "step 8 adds γ f Δt; as printed, f Δt (time.reading)",
-        _ => return None,
+        (true, false) => "N is a product over the axes of functions that sum up to 1",
+        (true, true) => "N is that of the particle's place in its cell",
+    }
+}
+
+/// Finds a particle that stands on a node, to round-off: which cell it belongs to is then chance.
+fn on_an_edge(entry: &Entry, group: &Group) -> Option<String> {
+    let of_particle = |e: &&Entry| (e.k, e.symbol, e.index) == (entry.k, "x_p", entry.index);
+    let stands = |e: &Entry| {
+        let cells = group.traces.given("h", e.component).map(|h| e.value / h);
+        cells.is_some_and(|x| (x - x.round()).abs() < 1e-11 * x.abs().max(1.0))
+    };
+    let on_node = group.traces.all.iter().filter(of_particle).any(stands);
+    on_node.then(|| {
+        "the particle stands on a node to the last digits: it belongs to the cell above, ξ is \
+         measured from the node's own coordinate; from here on both may be right"
+            .into()
     })
 }

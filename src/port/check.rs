@@ -1,19 +1,47 @@
 //! Holds a port's trace against a reference, and finds the first number that differs, in the
 //! paper's order.
 
-use super::cause::{self, Traces};
+use super::cause;
 use super::entry::{Address, COLUMNS, Entry, PAIRS, SYMBOLS, address, number};
+use super::noise::Floors;
+use super::patterns::Traces;
 use super::rows::{self, Rows, brief};
 use crate::scene::fault::Fault;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::io::Read;
 
 /// A tolerance says how far two numbers may be apart: `relative` times the larger of them, plus
-/// `absolute` times the largest value that the symbol has in its time step.
+/// `absolute` times the largest value that the symbol has in its time step, or its
+/// [floor](super::noise) where that is larger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     pub relative: f64,
     pub absolute: f64,
+}
+
+/// What is asked of a comparison.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    pub tolerance: Tolerance,
+    /// Compare what both have, whatever that is.
+    pub part: bool,
+    /// Leave these symbols out.
+    pub skip: Vec<String>,
+    /// Begin with this time step.
+    pub from: usize,
+    /// Find the first difference of every symbol.
+    pub all: bool,
+}
+
+impl Asked {
+    /// Asks for everything, from the start.
+    pub fn whole(tolerance: Tolerance, part: bool) -> Asked {
+        Asked { tolerance, part, skip: Vec::new(), from: 0, all: false }
+    }
+
+    fn wants(&self, entry: &Entry) -> bool {
+        entry.k >= self.from && !self.skip.iter().any(|symbol| symbol == entry.symbol)
+    }
 }
 
 /// A divergence is the first number that differs.
@@ -26,7 +54,7 @@ pub struct Divergence {
     /// Numbers between the two.
     pub ulps: u64,
     /// Where the likely cause is known.
-    pub cause: Option<&'static str>,
+    pub cause: Option<String>,
 }
 
 /// A report says what a comparison found.
@@ -34,6 +62,8 @@ pub struct Divergence {
 pub struct Report {
     pub compared: usize,
     pub divergence: Option<Divergence>,
+    /// The first difference of each symbol that has one, if that was asked for.
+    pub each: Vec<Divergence>,
     /// Symbols of the reference with the number of values that were not there.
     pub missing: BTreeMap<&'static str, usize>,
     /// Time steps of the reference of which nothing was there.
@@ -153,44 +183,64 @@ pub fn ulps(a: f64, b: f64) -> u64 {
     order(a).abs_diff(order(b))
 }
 
-// ANCHOR: compare
-/// Compares what both have, in the paper's order, up to the first difference.
+/// Compares all of two traces: [`compare_as`] with [`Asked::whole`].
 ///
-/// A port may leave out time steps, or symbols of a time step. Of a symbol that it
-/// prints in a time step it prints all numbers, and no others; nodes that a particle
-/// does not see may be there with 0, or not. With `part` only what both have is
-/// compared.
-///
-/// Errors, where nothing differs: [`Fault::Alone`] for a number that only one of them
-/// has, or if they have nothing in common.
+/// Errors: those of [`compare_as`].
 pub fn compare(
     reference: &[Entry],
     theirs: &Printed,
     tolerance: Tolerance,
     part: bool,
 ) -> Result<Report, Fault> {
+    compare_as(reference, theirs, &Asked::whole(tolerance, part))
+}
+
+// ANCHOR: compare
+/// Compares what both have, in the paper's order, up to the first difference.
+///
+/// A port may leave out time steps, or symbols of a time step. Of a symbol that it
+/// prints in a time step it prints all numbers, and no others; nodes that a particle
+/// does not see may be there with 0, or not. With [`Asked::part`] only what both have is
+/// compared.
+///
+/// Errors, where nothing differs: [`Fault::Alone`] for a number that only one of them
+/// has, or if they have nothing in common.
+pub fn compare_as(reference: &[Entry], theirs: &Printed, asked: &Asked) -> Result<Report, Fault> {
     let (given, own) = (by_place(reference), Own::new(theirs));
-    let (all, extra) = with_unseen_nodes(reference, &given, theirs);
+    let (all, mut extra) = with_unseen_nodes(reference, &given, theirs);
+    extra.retain(|n| asked.wants(&theirs.entries[*n]));
+    let wanted: Vec<&Entry> = all.iter().filter(|entry| asked.wants(entry)).collect();
     let mut report = Report {
         compared: 0,
         divergence: None,
+        each: Vec::new(),
         missing: BTreeMap::new(),
-        missing_steps: all.iter().map(|entry| entry.k).collect(),
+        missing_steps: wanted.iter().map(|entry| entry.k).collect(),
         extra: extra.len(),
     };
-    let (first, gap) = report.walk(&all, &own, &scales(reference), tolerance);
-    if let Some((entry, value)) = first {
-        let traces = Traces { reference: &given, theirs: &own.values };
-        report.divergence = Some(Divergence {
+    let floors = Floors::of(reference, &theirs.entries);
+    let (found, gap) = report.walk(&wanted, &own, &floors, asked.tolerance);
+    let traces = Traces { reference: &given, theirs: &own.values, all: &all };
+    let many = if asked.all { found.len() } else { 1 };
+    report.each = found
+        .into_iter()
+        .take(many)
+        .map(|(entry, value)| Divergence {
             reference: entry.clone(),
             theirs: value,
             line: own.line(entry),
             ulps: ulps(entry.value, value),
-            cause: cause::of(entry, value, &all, traces),
-        });
+            cause: {
+                let nothing = asked.tolerance.absolute * floors.scale(entry);
+                cause::of(entry, &theirs.entries, nothing, &traces)
+            },
+        })
+        .collect();
+    report.divergence = report.each.first().cloned();
+    if report.divergence.is_some() {
         return Ok(report);
     }
-    match alone(theirs, extra.first().copied(), gap).filter(|_| !part) {
+    match alone(theirs, extra.first().copied(), gap).filter(|_| !asked.part) {
         Some(fault) => Err(fault),
         None if report.compared == 0 => {
             Err(theirs.alone(None, "it has nothing that the reference has".into()))
@@ -211,16 +261,6 @@ fn alone(theirs: &Printed, extra: Option<usize>, gap: Option<&Entry>) -> Option<
         let problem = format!("there is no {}, but others of its kind", spelled(gap?));
         Some(theirs.alone(None, problem))
     })
-}
-
-/// Finds the largest size that each symbol has in each time step.
-fn scales(entries: &[Entry]) -> HashMap<(usize, &str), f64> {
-    let mut scales = HashMap::new();
-    for entry in entries {
-        let scale: &mut f64 = scales.entry((entry.k, entry.symbol)).or_insert(0.0);
-        *scale = scale.max(entry.value.abs());
-    }
-    scales
 }
 
 fn by_place(entries: &[Entry]) -> HashMap<Address, f64> {
@@ -294,18 +334,18 @@ fn spelled(entry: &Entry) -> String {
 }
 
 impl Report {
-    /// Goes through the reference `all` and counts what is there; returns the first
-    /// entry that differs, with the port's value, and the first that is missing among
-    /// others of its symbol.
+    /// Goes through the entries `all` of the reference and counts what is there; returns the
+    /// first entry of each symbol that differs, with the port's value, and the first entry that
+    /// is missing among others of its symbol.
     fn walk<'a>(
         &mut self,
-        all: &'a [Entry],
+        all: &[&'a Entry],
         own: &Own,
-        scales: &HashMap<(usize, &str), f64>,
+        floors: &Floors,
         tolerance: Tolerance,
-    ) -> (Option<(&'a Entry, f64)>, Option<&'a Entry>) {
-        let (mut first, mut gap) = (None, None);
-        for entry in all {
+    ) -> (Vec<(&'a Entry, f64)>, Option<&'a Entry>) {
+        let (mut found, mut gap): (Vec<(&Entry, f64)>, _) = (Vec::new(), None);
+        for entry in all.iter().copied() {
             let Some(value) = own.value(entry) else {
                 gap = gap.or(Some(entry).filter(|_| own.has_symbol(entry)));
                 *self.missing.entry(entry.symbol).or_insert(0) += 1;
@@ -314,53 +354,12 @@ impl Report {
             self.compared += 1;
             self.missing_steps.remove(&entry.k);
             let size = entry.value.abs().max(value.abs());
-            let scale = scales.get(&(entry.k, entry.symbol)).copied().unwrap_or(0.0);
-            let room = tolerance.relative * size + tolerance.absolute * scale;
-            if first.is_none() && (value - entry.value).abs() > room {
-                first = Some((entry, value));
+            let room = tolerance.relative * size + tolerance.absolute * floors.scale(entry);
+            let apart = (value - entry.value).abs() > room;
+            if apart && !found.iter().any(|(first, _)| first.symbol == entry.symbol) {
+                found.push((entry, value));
             }
         }
-        (first, gap)
-    }
-
-    /// Writes the report for a reader; `reference` and `theirs` are the files.
-    pub fn text(&self) -> String {
-        let mut text = match &self.divergence {
-            None => {
-                let all = self.compared + self.missing.values().sum::<usize>();
-                format!("{} of {all} numbers agree\n", self.compared)
-            }
-            Some(Divergence { reference: r, theirs, line, ulps, cause }) => {
-                let (equation, link) = cause::source(r);
-                let node = r.node.map_or(String::new(), |node| format!(", node {node}"));
-                let line = line.map_or(String::new(), |line| format!(" in line {line}"));
-                let size = r.value.abs().max(theirs.abs());
-                let relative = (theirs / size - r.value / size).abs();
-                let apart = match r.value * theirs > 0.0 {
-                    true => format!("{ulps} numbers apart"),
-                    false => "not of one sign".to_string(),
-                };
-                let cause = cause.map_or(String::new(), |c| format!("  likely: {c}\n"));
-                format!(
-                    "first difference: k = {}, step {}, {} of {equation}, index {}{node}, \
-                     component {}\n  reference {:?}\n  theirs    {:?}{line}\n  relative \
-                     {relative:.1e}, {apart}\n{cause}  book: {link}\n",
-                    r.k, r.step, r.symbol, r.index, r.component, r.value, theirs
-                )
-            }
-        };
-        let before = |k: &&usize| self.divergence.as_ref().is_some_and(|d| **k < d.reference.k);
-        if let Some(k) = self.missing_steps.iter().find(before) {
-            text += &format!("it may come from before: nothing of k = {k} was compared\n");
-        }
-        if !self.missing.is_empty() {
-            let list: Vec<String> =
-                self.missing.iter().map(|(symbol, n)| format!("{symbol} ({n})")).collect();
-            text += &format!("not compared, since they are not there: {}\n", list.join(", "));
-        }
-        if self.extra > 0 {
-            text += &format!("not compared, since the reference has none: {}\n", self.extra);
-        }
-        text
+        (found, gap)
     }
 }

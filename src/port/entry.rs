@@ -1,5 +1,6 @@
 //! A trace is made of entries; they have symbols, and a form as CSV.
 
+use crate::method::basis::Basis;
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::{Nodes, Particles};
@@ -7,6 +8,7 @@ use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
 use crate::method::reading::Kinematics;
 use crate::run::table;
+use crate::scene::Scene;
 use crate::scene::fault::Fault;
 use nalgebra::{SMatrix, SVector};
 
@@ -41,10 +43,17 @@ pub fn address(entry: &Entry) -> Address {
 /// A trace has these columns.
 pub const COLUMNS: [&str; 7] = ["k", "step", "symbol", "index", "node", "component", "value"];
 
-/// Symbols stand in the paper's order, each with its equation or what it is, and its place in
-/// the book.
-pub const SYMBOLS: [(&str, &str, &str); 31] = [
+/// Symbols stand in the paper's order, what is given first, each with its equation or what it
+/// is, and its place in the book. Places come before what is made at them.
+pub const SYMBOLS: [(&str, &str, &str); 35] = [
     ("dt", "T/n", "algorithm.html#time-step"),
+    ("E", "what is given", "governing-equations.html#eq-3"),
+    ("nu", "what is given", "governing-equations.html#eq-3"),
+    ("h", "what is given", "grid.html#nodes"),
+    ("gamma", "what is given", "local-max-ent.html"),
+    ("m_p", "ρ times its share of the body", "grid.html#particles"),
+    ("x_I", "OTM, step 2", "otm.html"),
+    ("x_p", "(19) or the scheme's own", "time-integration.html"),
     ("N_Ip", "(31) or the basis at hand", "basis.html"),
     ("grad_N_Ip", "(35) or the basis at hand", "basis.html"),
     ("lambda", "(37)", "local-max-ent.html"),
@@ -61,12 +70,9 @@ pub const SYMBOLS: [(&str, &str, &str); 31] = [
     ("f_ext_I", "(15)", "weak-form.html#eq-15"),
     ("f_I", "(18)", "weak-form.html#eq-18"),
     ("p_I_advanced", "the advanced momentum", "time-integration.html"),
-    ("x_p", "(19) or the scheme's own", "time-integration.html"),
+    ("a_p", "(18) at the particle, or (26)", "time-integration.html#eq-26"),
     ("v_p", "(19) or the scheme's own", "time-integration.html"),
-    ("x_I", "OTM, step 2", "otm.html"),
     // Kernels by themselves, level 0 of the conformance kit.
-    ("E", "what is given", "governing-equations.html#eq-3"),
-    ("nu", "what is given", "governing-equations.html#eq-3"),
     ("W_p", "½ σ : D⁻¹ : σ", "conservation.html"),
     ("phi", "what is given", "dyka-bar.html#eq-39"),
     ("phi_exact", "what is given", "dyka-bar.html#eq-39"),
@@ -111,8 +117,24 @@ impl TraceRecorder {
         })
     }
 
-    /// Writes what `symbol` has become in a state; loads are those of `t` (s).
-    pub(super) fn symbol<const D: usize>(
+    /// Writes what a scene gives: Δt, E, ν, h, γ of local max-ent, and the particles (with OTM
+    /// the nodes' places, too) at the start.
+    pub fn given<const D: usize>(&mut self, scene: &Scene, state: &State<D>, model: &Model<D>) {
+        self.at(0, 0).numbers("dt", &[model.dt]);
+        self.numbers("E", &[scene.body.youngs_modulus]);
+        self.numbers("nu", &[scene.body.poisson_ratio]);
+        self.vectors("h", &[model.grid.h]);
+        if let Basis::Lme { gamma, .. } = model.basis {
+            self.numbers("gamma", &[gamma]);
+        }
+        for symbol in ["m_p", "x_I", "x_p", "F_p", "rho_p", "sigma_p", "v_p"] {
+            self.symbol(symbol, state, model, 0.0);
+        }
+    }
+
+    /// Writes what `symbol` has become in a state; loads are those of `t` (s): one table, which is
+    /// why this function is long.
+    pub fn symbol<const D: usize>(
         &mut self,
         symbol: &'static str,
         State { particle, node, shape, .. }: &State<D>,
@@ -122,11 +144,10 @@ impl TraceRecorder {
         match symbol {
             "N_Ip" => self.shapes(shape),
             "grad_N_Ip" => self.gradients(shape),
-            "lambda" if model.basis.has_multiplier() => {
-                let lambda = particle.lambda.iter().map(|known| known.lambda);
-                self.multipliers(lambda, &model.grid.h);
+            "lambda" => {
+                let known = particle.lambda.iter().filter(|_| model.basis.has_multiplier());
+                self.multipliers(known.map(|known| known.lambda), &model.grid.h);
             }
-            "lambda" => {}
             "m_I" => self.numbers(symbol, &node.m),
             "p_I" | "p_I_advanced" => self.vectors(symbol, &node.p),
             "v_I" => self.vectors(symbol, &node.v),
@@ -153,6 +174,8 @@ impl TraceRecorder {
             "rho_p" => self.numbers(symbol, &particle.rho),
             "sigma_p" => self.tensors(symbol, &particle.sigma),
             "x_p" => self.vectors(symbol, &particle.x),
+            "a_p" => self.vectors(symbol, &particle.a),
+            "m_p" => self.numbers(symbol, &particle.m),
             _ => self.vectors("v_p", &particle.v),
         }
     }
@@ -169,7 +192,7 @@ impl TraceRecorder {
         let rate = !model.law.law.is_hyperelastic();
         let of_map = model.kinematics == Kinematics::Consistent;
         let (wanted, name, list) = match symbol {
-            "G_p" => (!rate || of_map, symbol, &particle.G),
+            "G_p" => (model.keeps_gradient(), symbol, &particle.G),
             "d_eps_p_printed" => (rate && !of_map, "d_eps_p", &particle.d_eps),
             "d_eps_p_of_map" => (rate && of_map, "d_eps_p", &particle.d_eps),
             _ => (rate, symbol, &particle.d_eps),

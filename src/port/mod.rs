@@ -3,6 +3,11 @@
 mod cause;
 pub mod check;
 mod entry;
+pub mod noise;
+mod patterns;
 pub mod points;
+mod precision;
+mod report;
 pub mod rows;
+mod scheme;
 pub mod trace;

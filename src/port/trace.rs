@@ -6,8 +6,8 @@
 
 use crate::method::breakdown::{BrokenDown, Moment};
 use crate::method::choice::{Integrator, Method};
-use crate::method::model::State;
-use crate::method::reading::{Kinematics, StressUpdate};
+use crate::method::model::{Model, State};
+use crate::method::reading::{Kinematics, NodalMass, StressUpdate};
 use crate::method::time;
 use crate::scene::Scene;
 use crate::scene::fault::Fault;
@@ -28,7 +28,7 @@ pub fn affordable(scene: &Scene, steps: usize) -> Result<(), Fault> {
         return refuse(problem, "a whole number up to the number of steps of the scene");
     }
     let d = scene.dimension() as f64;
-    let of_particle = scene.pairs_per_particle() * (1.0 + d) + 3.0 * d + 2.0 * d * d + 1.0;
+    let of_particle = scene.pairs_per_particle() * (1.0 + d) + 4.0 * d + 3.0 * d * d + 1.0;
     let numbers = (steps as f64 + 1.0) * (particles * of_particle + nodes * (1.0 + 5.0 * d));
     if numbers > MOST_NUMBERS {
         let problem = format!("{steps} steps of this scene make {numbers:.0e} numbers");
@@ -59,29 +59,40 @@ pub fn trace_in<const D: usize>(
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
     let mut recorder = TraceRecorder::default();
-    recorder.numbers("dt", &[model.dt]);
-    recorder.vectors("x_p", &state.particle.x);
-    recorder.vectors("v_p", &state.particle.v);
+    recorder.given(scene, &state, &model);
     for k in 0..=steps {
         let moment = Moment::of(k, model.dt);
-        let loads_at = match k {
-            0 => 0.0,
-            _ => time::time_of_loads(model.method, model.dt, moment.time),
-        };
-        let mut after = |n: usize, state: &State<D>| {
-            recorder.at(k, n);
-            for symbol in made_by(model.method, model.kinematics, n) {
-                recorder.symbol(symbol, state, &model, loads_at);
-            }
-        };
+        let mut after = |n: usize, state: &State<D>| recorder.step(k, n, state, &model);
         let done = match k {
             0 => time::start(&mut state, &model, &mut after),
             _ => time::advance(&mut state, &model, moment.time, &mut after),
         };
+        if k == 0 && is_generalized_alpha(model.method) {
+            recorder.at(0, 0).symbol("a_p", &state, &model, 0.0);
+        }
         // A number that is none stands in the trace before the step that stumbles over it.
         recorder.finite().and(done).map_err(|what| what.at(moment))?;
     }
     Ok((recorder.entries, state))
+}
+
+impl TraceRecorder {
+    /// Writes what step `n` of time step `k` has made of a state.
+    pub fn step<const D: usize>(&mut self, k: usize, n: usize, state: &State<D>, model: &Model<D>) {
+        let loads_at = match k {
+            0 => 0.0,
+            _ => time::time_of_loads(model.method, model.dt, Moment::of(k, model.dt).time),
+        };
+        self.at(k, n);
+        for symbol in made_by(model.method, model.kinematics, n) {
+            self.symbol(symbol, state, model, loads_at);
+        }
+    }
+}
+
+/// Tells whether the start has made an acceleration that no step of it shows.
+fn is_generalized_alpha(method: Method) -> bool {
+    matches!(method, Method::Mpm(Integrator::GeneralizedAlpha { .. }))
 }
 
 /// Lists the symbols that step `n` of a method makes, in the paper's order: one table, which is
@@ -89,22 +100,24 @@ pub fn trace_in<const D: usize>(
 fn made_by(method: Method, kinematics: Kinematics, n: usize) -> &'static [&'static str] {
     const NONE: &[&str] = &[];
     const TABLE: &[&str] = &["N_Ip", "grad_N_Ip", "lambda"];
+    const RENEWED: &[&str] = &["N_Ip", "grad_N_Ip", "lambda", "m_I", "v_I"];
     const MAPPED: &[&str] = &["m_I", "p_I"];
     const FORCES: &[&str] = &["f_int_I", "f_ext_I", "f_I"];
     const ADVANCED: &[&str] = &["p_I_advanced"];
     const MOVED: &[&str] = &["v_p", "x_p"];
+    const MOVED_WITH_A: &[&str] = &["a_p", "v_p", "x_p"];
     const MATERIAL: &[&str] = &["G_p", "d_eps_p", "F_p", "rho_p", "sigma_p"];
     const STRAINED: &[&str] = &["v_I", "G_p", "d_eps_p", "F_p", "rho_p", "sigma_p"];
     const STRAINED_LAST: &[&[&str]] =
         &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, MATERIAL];
     let steps: &[&[&str]] = match method {
-        Method::Otm(_) => &[
-            &["m_I", "v_I"],
+        Method::Otm(masses) => &[
+            &["N_Ip", "grad_N_Ip", "lambda", "m_I", "v_I", "f_int_I", "f_ext_I", "f_I"],
             &["v_I"],
             &["x_I"],
             &["x_p"],
             MATERIAL,
-            TABLE,
+            if masses == NodalMass::Kept { TABLE } else { RENEWED },
             FORCES,
             &["v_I", "v_p"],
         ],
@@ -119,7 +132,7 @@ fn made_by(method: Method, kinematics: Kinematics, n: usize) -> &'static [&'stat
                 &["d_eps_p_of_map", "F_p", "rho_p", "sigma_p"],
                 FORCES,
                 ADVANCED,
-                &["v_p"],
+                &["a_p", "v_p"],
             ],
             Integrator::ForwardEuler(_) | Integrator::CorrectedEuler
                 if kinematics == Kinematics::Consistent =>
@@ -133,9 +146,16 @@ fn made_by(method: Method, kinematics: Kinematics, n: usize) -> &'static [&'stat
             Integrator::ForwardEuler(StressUpdate::ModifiedLast) | Integrator::CorrectedEuler => {
                 &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, STRAINED]
             }
-            Integrator::GeneralizedAlpha { .. } => {
-                &[NONE, TABLE, MAPPED, &["a_I", "v_I"], FORCES, &["a_I_next"], MOVED, MATERIAL]
-            }
+            Integrator::GeneralizedAlpha { .. } => &[
+                NONE,
+                TABLE,
+                MAPPED,
+                &["a_I", "v_I"],
+                FORCES,
+                &["a_I_next"],
+                MOVED_WITH_A,
+                STRAINED,
+            ],
         },
     };
     steps.get(n).copied().unwrap_or(NONE)

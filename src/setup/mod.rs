@@ -108,6 +108,7 @@ fn displace<const D: usize>(state: &mut State<D>, moved: &Moved<D>) {
     }
 }
 
+// ANCHOR: fixed
 /// Lists the nodes on or beyond a side with the components that are fixed there.
 fn fixed<const D: usize>(scene: &Scene, grid: &Grid<D>) -> Vec<(usize, usize)> {
     let mut fixed = Vec::new();
@@ -127,3 +128,4 @@ fn fixed<const D: usize>(scene: &Scene, grid: &Grid<D>) -> Vec<(usize, usize)> {
     }
     fixed
 }
+// ANCHOR_END: fixed

@@ -213,9 +213,12 @@ def run(cells, per_cell, cfl, steps, basis):
     shapes = [[] for _ in P]
     room = nodes + 1  # one more, for a node numbered wrongly
     mI, pI, fI = [0.0] * room, [0.0] * room, [0.0] * room
-    show(0, 0, "dt", [dt])
-    show(0, 0, "x_p", x)
-    show(0, 0, "v_p", v)
+    for symbol, values in (("dt", [dt]), ("E", [bar["modulus"]]), ("nu", [bar["poisson"]]),
+                           ("h", [h]), ("m_p", m), ("x_p", x), ("v_p", v),
+                           ("rho_p", rho), ("sigma_p", sigma)):
+        show(0, 0, symbol, values)
+    if basis != "linear":
+        show(0, 0, "gamma", [float(basis)])
     for k in range(steps + 1):
         step = dt if k else 0.0
         # 1: predictor, with N, f_I and the advanced p_I of the step before.
@@ -283,10 +286,13 @@ def run(cells, per_cell, cfl, steps, basis):
         show(k, 8, "p_I_advanced", pI[:nodes])
         if bug == "predictor-takes-mapped-momentum":
             pI = mapped
-        # 9: corrector.
+        # 9: corrector, with the particle's acceleration.
+        a = [0.0] * len(x)
         for p in P:
             table = old_shapes[p] if bug == "old-N-in-corrector" and k else shapes[p]
-            v[p] += 0.5 * step * sum(fI[I] / mI[I] * N for I, N, _ in table if mI[I] > 0)
+            a[p] = sum(fI[I] / mI[I] * N for I, N, _ in table if mI[I] > 0)
+            v[p] += 0.5 * step * a[p]
+        show(k, 9, "a_p", a)
         show(k, 9, "v_p", v)
         velocity, stress = exact_bar(start[-1], k * dt)[0], exact_bar(start[middle], k * dt)[1]
         yield (v[-1], velocity), (sigma[middle], stress)

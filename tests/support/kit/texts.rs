@@ -11,7 +11,7 @@ use lme_mpm::run::stability::predicted;
 use lme_mpm::run::table::shortest;
 use lme_mpm::scene::DYKA;
 use lme_mpm::setup;
-use nalgebra::{Matrix1, Matrix2, SMatrix, Vector1};
+use nalgebra::{Matrix1, Matrix2, Matrix3, SMatrix, SVector, Vector3};
 use std::fmt::Write;
 
 /// A number as decimal and hexadecimal cells.
@@ -24,15 +24,49 @@ fn both(x: f64) -> String {
 pub const QUARTERS: [&str; 5] =
     ["body.length=2", "grid.cells=8", "time.end=1", "initial_velocity=[]", "probe=[]"];
 
+/// The grid that level 0 tabulates shape functions on in 2D: h = (½, ¼) m, three cells by
+/// four.
+pub const CELLS: [&str; 3] = ["body.length=[1,0.75]", "grid.cells=[2,3]", "initial_velocity=[]"];
+
+/// The same in 3D: h = (½, ¼, 1) m.
+pub const BOXES: [&str; 3] =
+    ["body.length=[1,0.25,1]", "grid.cells=[2,1,1]", "initial_velocity=[]"];
+
+/// Places in cells: inside, on a node, on faces, on two sides, in three corners, near a corner,
+/// near a node.
+pub const PLACES_2D: [[f64; 2]; 12] = [
+    [0.5, 0.5],
+    [1.25, 2.75],
+    [1.0, 1.0],
+    [1.0, 1.5],
+    [0.0, 1.5],
+    [1.5, 4.0],
+    [0.0, 0.0],
+    [3.0, 0.0],
+    [3.0, 4.0],
+    [2.999, 3.999],
+    [1.0625, 1.5],
+    [2.0, 1.0625],
+];
+
+/// Inside, on a node, on a side, on an edge, in a corner.
+pub const PLACES_3D: [[f64; 3]; 5] =
+    [[1.25, 0.5, 0.75], [1.0, 1.0, 1.0], [1.5, 0.0, 0.5], [0.0, 2.0, 0.25], [3.0, 2.0, 2.0]];
+
 /// A basis at points inside a cell, on nodes, beside them, near the end. What level 0 gives
 /// stands in step 0, what a port makes of it after.
 pub fn basis(sets: &[&str]) -> String {
-    let model = setup::model::<1>(&dyka(&[sets, &QUARTERS].concat()));
-    let tabulated = |points: &[Vector1<f64>]| on_grid(&model.basis, &model.grid, points);
     let places = [0.25, 0.5, 1.0, 2.75, 3.999, 4.0, 4.001, 6.5, 7.75, 8.0];
-    let places = places.map(|cells| Vector1::new(0.25 * cells));
+    basis_in::<1>(DYKA, &[sets, &QUARTERS].concat(), &places.map(|x| [x]))
+}
+
+/// A basis on the grid of a scene at `places`, in cells from the body's lower corner.
+pub fn basis_in<const D: usize>(base: &str, sets: &[&str], places: &[[f64; D]]) -> String {
+    let model = setup::model::<D>(&scene(base, sets));
+    let tabulated = |points: &[SVector<f64, D>]| on_grid(&model.basis, &model.grid, points);
+    let at = |cells: &[f64; D]| SVector::from_fn(|d, _| cells[d] * model.grid.h[d]);
     // uGIMP's particles must not reach beyond the grid.
-    let places: Vec<_> = places.into_iter().filter(|x| tabulated(&[*x]).is_ok()).collect();
+    let places: Vec<_> = places.iter().map(at).filter(|x| tabulated(&[*x]).is_ok()).collect();
     let table = tabulated(&places).unwrap();
     let mut kernel = TraceRecorder::default();
     for (p, x) in places.iter().enumerate() {
@@ -55,6 +89,33 @@ pub fn law_1d() -> String {
 pub fn law_2d() -> String {
     law([[1e-3, 2e-4, -4e-4], [0.0, 0.1, 0.0], [-0.2, 0.0, 0.3]]
         .map(|[xx, xy, yy]| Matrix2::new(xx, xy, xy, yy)))
+}
+
+/// The elastic law in three dimensions.
+pub fn law_3d() -> String {
+    let shear = Matrix3::new(0.1, 0.01, -0.02, 0.01, -0.2, 0.03, -0.02, 0.03, 0.05);
+    law([shear, Matrix3::from_diagonal(&Vector3::new(1e-3, 0.0, -2e-3)), shear * 1e-3])
+}
+
+/// The Cauchy stress and the energy per volume at t = 0 of deformation gradients, one of them
+/// a rotation.
+pub fn law_of_deformation(law: Law) -> String {
+    let mut kernel = TraceRecorder::default();
+    let (c, s) = (0.8, 0.6);
+    let deformations = [[1.1, 0.2, 0.0, 0.95], [c, -s, s, c], [1.3, -0.1, 0.25, 0.7]];
+    let mut k = 0;
+    for (E, nu) in [(1e6, 0.3), (7.0, 0.0)] {
+        for [xx, xy, yx, yy] in deformations {
+            let (law, F) = (Elastic::new(law, E, nu), Matrix2::new(xx, xy, yx, yy));
+            kernel.at(k, 0).components("E", 0, &[E]);
+            kernel.at(k, 0).components("nu", 0, &[nu]);
+            kernel.at(k, 0).components("F_p", 0, &[xx, xy, yx, yy]);
+            kernel.at(k, 6).components("sigma_p", 0, law.stress_of(&F).as_slice());
+            kernel.at(k, 6).components("W_p", 0, &[law.energy_of(&F)]);
+            k += 1;
+        }
+    }
+    in_both(&kernel.entries)
 }
 
 /// Stress, density and energy of three materials after each of three strains.
@@ -132,9 +193,9 @@ fn in_both(entries: &[Entry]) -> String {
     text
 }
 
-/// The trace of the bar with changes.
-pub fn traced(sets: &[&str], steps: usize) -> String {
-    in_both(&trace::trace(&dyka(sets), steps).unwrap())
+/// The trace of the scene `base` with changes.
+pub fn traced(base: &str, sets: &[&str], steps: usize) -> String {
+    in_both(&trace::trace(&scene(base, sets), steps).unwrap())
 }
 
 /// What the probes of the bar follow: its last particle, and the one nearest to 3L/4.
