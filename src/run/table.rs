@@ -62,7 +62,7 @@ impl Table {
 
     /// Writes the table as CSV with a header line.
     ///
-    /// Errors: those of [`csv`].
+    /// Errors: those of [`csv()`].
     pub fn csv(&self) -> Result<Vec<u8>, Fault> {
         let rows = self.rows().map(|row| row.iter().map(|x| shortest(*x)).collect());
         csv(&self.columns, rows)
