@@ -14,7 +14,7 @@ use lme_mpm::study::gamma::{self as gammas, AtGamma};
 use lme_mpm::study::map;
 use lme_mpm::study::orders::{self, Along, Ladder, Volumes};
 use lme_mpm::study::rows::{self, Study};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Shows a bar for `length` pieces of work, on stderr, and from the start for how long it has
 /// been at it: the first piece may take a while.
@@ -57,31 +57,73 @@ pub fn list_rows(study: &str, scene: Option<&Path>, names: &[String]) -> Result<
     print_bytes(names.iter().map(line).collect::<String>().as_bytes())
 }
 
+/// A study by rows is computed as a whole, or row by row; an item of it makes a row.
+struct ByRows<'a, Item, Row> {
+    /// What its command is called, and its table.
+    study: &'static str,
+    scene: Option<&'a Path>,
+    items: &'a [Item],
+    name: fn(&Item) -> String,
+    columns: &'a [&'a str],
+    digest: String,
+    /// Computes the rows of some items by so many threads, and tells of each.
+    compute: &'a Compute<'a, Item, Row>,
+    table: fn(&[Row]) -> Result<Vec<u8>, Fault>,
+    /// Reads a row and its name from the cells of a line.
+    read: &'a dyn Fn(&[&str]) -> Option<(String, Row)>,
+}
+
+type Compute<'a, Item, Row> =
+    dyn Fn(&[Item], usize, &mut dyn FnMut()) -> Result<Vec<Row>, Fault> + 'a;
+
+impl<Item, Row: Clone> ByRows<'_, Item, Row> {
+    /// Gives all rows, computed or merged; `None` where the list of rows or one of them was
+    /// asked for, and is printed.
+    fn rows(
+        &self,
+        arguments: &RowArguments,
+        dir: &Path,
+        jobs: u16,
+    ) -> Result<Option<Vec<Row>>, Fault> {
+        let names: Vec<String> = self.items.iter().map(self.name).collect();
+        if arguments.list {
+            return list_rows(self.study, self.scene, &names).map(|()| None);
+        }
+        if let Some(row) = &arguments.row {
+            let one = std::slice::from_ref(&self.items[rows::find(&names, row)?]);
+            let row = (self.table)(&(self.compute)(one, 1, &mut || {})?)?;
+            return print_bytes(&rows::with_scene(&self.digest, &row)).map(|()| None);
+        }
+        if arguments.merge.is_empty() {
+            prepare(dir)?;
+            let bar = progress(self.items.len());
+            let rows = (self.compute)(self.items, usize::from(jobs), &mut || bar.inc(1));
+            bar.finish_and_clear();
+            return rows.map(Some);
+        }
+        let own = format!("{}.csv", self.study);
+        arguments.merge.iter().try_for_each(|path| files::spare(path, dir, |name| name == own))?;
+        let study = Study { scene: self.digest.clone(), columns: self.columns, names: &names };
+        let rows = study.merged(&arguments.merge, self.read)?;
+        prepare(dir)?;
+        Ok(Some(rows))
+    }
+}
+
 /// Does `lme-mpm gamma`.
 pub fn gamma(arguments: &RowArguments, dir: &Path, jobs: u16) -> Result<(), Fault> {
-    let items = gammas::items();
-    let name = |(way, gamma): &gammas::Item| AtGamma::name(way.name, *gamma);
-    let names: Vec<String> = items.iter().map(name).collect();
-    if arguments.list {
-        return list_rows("gamma", None, &names);
-    }
-    if let Some(row) = &arguments.row {
-        let row = gammas::study(&[items[rows::find(&names, row)?]], 1, &mut || {})?;
-        return print_bytes(&rows::with_scene(&gammas::digest()?, &gammas::table(&row)?));
-    }
-    let rows = if arguments.merge.is_empty() {
-        prepare(dir)?;
-        let bar = progress(items.len());
-        let rows = gammas::study(&items, usize::from(jobs), &mut || bar.inc(1));
-        bar.finish_and_clear();
-        rows?
-    } else {
-        spare_all(&arguments.merge, dir, "gamma.csv")?;
-        let study = Study { scene: gammas::digest()?, columns: &gammas::columns(), names: &names };
-        let rows = study.merged(&arguments.merge, AtGamma::read)?;
-        prepare(dir)?;
-        rows
+    let study = ByRows {
+        study: "gamma",
+        scene: None,
+        items: &gammas::items(),
+        name: |(way, gamma)| AtGamma::name(way.name, *gamma),
+        columns: &gammas::columns(),
+        digest: gammas::digest()?,
+        compute: &gammas::study,
+        table: gammas::table,
+        read: &AtGamma::read,
     };
+    let Some(rows) = study.rows(arguments, dir, jobs)? else { return Ok(()) };
     let mut files = vec![("gamma.csv".to_string(), gammas::table(&rows)?)];
     for name in gammas::Effect::default().named().map(|(name, _)| name) {
         let words = name.replace('_', " ");
@@ -94,38 +136,22 @@ pub fn gamma(arguments: &RowArguments, dir: &Path, jobs: u16) -> Result<(), Faul
     print_report("", "", dir)
 }
 
-/// Refuses to write over what is merged: the study's own table in `dir`.
-fn spare_all(merge: &[PathBuf], dir: &Path, own: &str) -> Result<(), Fault> {
-    merge.iter().try_for_each(|path| files::spare(path, dir, |name| name == own))
-}
-
 /// Does `lme-mpm orders`.
 pub fn orders(arguments: &RowArguments, scene: &Path, dir: &Path, jobs: u16) -> Result<(), Fault> {
     let template = template(Some(scene))?;
     comparable(&template)?;
-    let ladders = orders::ladders();
-    let names: Vec<String> = ladders.iter().map(Ladder::name).collect();
-    if arguments.list {
-        return list_rows("orders", Some(scene), &names);
-    }
-    if let Some(row) = &arguments.row {
-        let one = &ladders[rows::find(&names, row)?];
-        let row = orders::study(&template, std::slice::from_ref(one), 1, &mut || {});
-        return print_bytes(&rows::with_scene(&template.digest()?, &orders::table(&row)?));
-    }
-    let rows = if arguments.merge.is_empty() {
-        prepare(dir)?;
-        let bar = progress(ladders.len());
-        let rows = orders::study(&template, &ladders, usize::from(jobs), &mut || bar.inc(1));
-        bar.finish_and_clear();
-        rows
-    } else {
-        spare_all(&arguments.merge, dir, "orders.csv")?;
-        let study = Study { scene: template.digest()?, columns: &orders::columns(), names: &names };
-        let rows = study.merged(&arguments.merge, orders::read)?;
-        prepare(dir)?;
-        rows
+    let study = ByRows {
+        study: "orders",
+        scene: Some(scene),
+        items: &orders::ladders(),
+        name: Ladder::name,
+        columns: &orders::columns(),
+        digest: template.digest()?,
+        compute: &|ladders, jobs, tell| Ok(orders::study(&template, ladders, jobs, tell)),
+        table: orders::table,
+        read: &orders::read,
     };
+    let Some(rows) = study.rows(arguments, dir, jobs)? else { return Ok(()) };
     write_all(dir, &[("orders.csv".to_string(), orders::table(&rows)?)], &[])?;
     print_report("", &fitted(&rows), dir)
 }
@@ -167,29 +193,18 @@ pub fn stability(
         }
     };
     let combinations = map::combinations(&template)?;
-    let names: Vec<String> = combinations.iter().map(map::Combination::name).collect();
-    if arguments.list {
-        return list_rows("stability", scene, &names);
-    }
-    if let Some(row) = &arguments.row {
-        let one = &combinations[rows::find(&names, row)?];
-        let row = map::map(&template, std::slice::from_ref(one), 1, &mut || {});
-        return print_bytes(&rows::with_scene(&template.digest()?, &map::table(&row)?));
-    }
-    let rows = if arguments.merge.is_empty() {
-        prepare(dir)?;
-        let bar = progress(combinations.len());
-        let rows = map::map(&template, &combinations, usize::from(jobs), &mut || bar.inc(1));
-        bar.finish_and_clear();
-        rows
-    } else {
-        spare_all(&arguments.merge, dir, "stability.csv")?;
-        let study = Study { scene: template.digest()?, columns: &map::columns(), names: &names };
-        let rows =
-            study.merged(&arguments.merge, |cells| map::Mapped::read(&combinations, cells))?;
-        prepare(dir)?;
-        rows
+    let study = ByRows {
+        study: "stability",
+        scene,
+        items: &combinations,
+        name: map::Combination::name,
+        columns: &map::columns(),
+        digest: template.digest()?,
+        compute: &|some, jobs, tell| Ok(map::map(&template, some, jobs, tell)),
+        table: map::table,
+        read: &|cells| map::Mapped::read(&combinations, cells),
     };
+    let Some(rows) = study.rows(arguments, dir, jobs)? else { return Ok(()) };
     write_all(dir, &[("stability.csv".to_string(), map::table(&rows)?)], &[])?;
     print_report("", &limits(&rows), dir)
 }
@@ -211,7 +226,7 @@ fn limits(rows: &[map::Mapped]) -> String {
             table.add_row([
                 configuration.value("method").to_string(),
                 configuration.value("mass").to_string(),
-                configuration.words(&["basis.kind", "basis.gamma"]),
+                configuration.words(&["basis.kind", "basis.degree", "basis.gamma"]),
                 configuration.words(&["time.integrator", "time.stress_update", "time.rho_b"]),
                 format!("{predicted:.4}"),
                 format!("{measured:.4}"),
