@@ -2,8 +2,7 @@
 //! (22)-(23).
 //!
 //! The nodal momentum is advanced first, and the particles move with the
-//! advanced one. (With the old momentum, as (21) is printed, no step is
-//! stable.) Then (20)-(21) and (22)-(23) are the same sums. The corrected form
+//! advanced one; as (21) is printed they would move with the old. Then (20)-(21) and (22)-(23) are the same sums. The corrected form
 //! takes the strain from the momentum of the particles, mapped anew.
 
 use super::steps::*;
