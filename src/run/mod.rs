@@ -86,7 +86,8 @@ fn run_in<const D: usize>(
         Ok(())
     };
     if let Err(broken) = march() {
-        return Err(Box::new(Stopped { broken, history: recorder.history }));
+        let Recorder { history, frames, .. } = recorder;
+        return Err(Box::new(Stopped { broken, history, frames }));
     }
     let end = Moment::of(model.steps, model.dt);
     let bytes_per_particle = model.bytes_per_particle() as u64;
