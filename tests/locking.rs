@@ -111,7 +111,7 @@ fn locking_of_a_cantilever() {
     let mut table = format!("basis,{}\n", nus.join(","));
     for (name, sets) in [
         ("linear", &["basis.kind=linear"][..]),
-        ("linear, 1 per cell", &["basis.kind=linear", "grid.particles_per_cell=[1,1]"]),
+        ("linear with 1 per cell", &["basis.kind=linear", "grid.particles_per_cell=[1,1]"]),
         ("uGIMP", &["basis.kind=ugimp"]),
         ("B-spline", &["basis.kind=bspline"]),
         ("LME 0.8", &["basis.kind=lme", "basis.gamma=0.8"]),
