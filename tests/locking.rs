@@ -120,7 +120,7 @@ fn locking_of_a_cantilever() {
         ("OTM 0.8", &["method=otm", "basis.kind=lme", "basis.gamma=0.8"]),
         ("OTM 4", &["method=otm", "basis.kind=lme", "basis.gamma=4"]),
         (
-            "OTM 4, 1 per cell",
+            "OTM 4 with 1 per cell",
             &["method=otm", "basis.kind=lme", "basis.gamma=4", "grid.particles_per_cell=[1,1]"],
         ),
     ] {
