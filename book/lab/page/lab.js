@@ -10,7 +10,7 @@
   const round = (x) => Number(x.toPrecision(3));
   const text = (bytes) => (bytes ? new TextDecoder().decode(bytes) : "");
   const list = (bytes) => (bytes ? new Float64Array(bytes) : new Float64Array(0));
-  const percent = (x) => (100 * x < 0.01 ? (100 * x).toExponential(1) : (100 * x).toPrecision(3)) + " %";
+  const percent = (x) => (x >= 10 ? Math.round(x) + " times" : 100 * x < 0.01 ? (100 * x).toExponential(1) : (100 * x).toPrecision(3)) + (x >= 10 ? "" : " %");
 
   // The controls. A slider goes from `least` to `most`, by equal factors where it is `log`.
   const sliders = {
@@ -228,7 +228,7 @@
     for (let n = Math.ceil(least / step - 1e-9); n * step <= most + 1e-9 * step; n++) out.push(n * step);
     return out;
   }
-  const label = (x) => (x === 0 ? "0" : Math.abs(x) >= 1e4 || Math.abs(x) < 1e-3 ? x.toExponential(0) : String(Number(x.toPrecision(4))));
+  const label = (x) => (Math.abs(x) < 1e-300 ? "0" : Math.abs(x) >= 1e4 || Math.abs(x) < 1e-3 ? x.toExponential(0) : String(Number(x.toPrecision(4))));
 
   // Makes a canvas sharp, and gives its context and size.
   function open(canvas, height) {
@@ -245,7 +245,7 @@
   // Draws axes and gives the maps from values to pixels.
   function axes(canvas, height, box) {
     const [pen, width] = open(canvas, height);
-    const left = 46, right = width - 8, top = 8, bottom = height - 30;
+    const left = 46, right = width - 14, top = 8, bottom = height - 30;
     const X = (x) => left + ((x - box.x[0]) / (box.x[1] - box.x[0])) * (right - left);
     const Y = (y) => bottom - ((y - box.y[0]) / (box.y[1] - box.y[0])) * (bottom - top);
     pen.fillStyle = css("--fg");
@@ -348,7 +348,7 @@
         exact: paint((k) => exactAt(k, 0), (k) => exactAt(k, field[1])),
       };
     }
-    const top = 18, bottom = height - 22, gap = 12, half = (width - 46 - 8 - gap) / 2;
+    const top = 18, bottom = height - 22, gap = 12, half = (width - 46 - 14 - gap) / 2;
     pen.imageSmoothingEnabled = false;
     pen.fillStyle = css("--fg"); pen.strokeStyle = css("--lab-line");
     pen.textAlign = "right";
@@ -361,7 +361,7 @@
       pen.fillText("0", left + 4, bottom + 14); pen.fillText("x (m)", left + half / 2, bottom + 14); pen.fillText(String(length()), left + half - 16, bottom + 14);
     });
     const y = bottom - (seen.t[frame] / seen.end) * (bottom - top);
-    pen.strokeStyle = css("--fg"); pen.setLineDash([4, 3]); pen.beginPath(); pen.moveTo(46, y); pen.lineTo(width - 8, y); pen.stroke(); pen.setLineDash([]);
+    pen.strokeStyle = css("--fg"); pen.setLineDash([4, 3]); pen.beginPath(); pen.moveTo(46, y); pen.lineTo(width - 14, y); pen.stroke(); pen.setLineDash([]);
     $("map").lab = { top, bottom };
   }
 
@@ -404,6 +404,7 @@
     const { nodes, x, N, slope } = shapes, count = nodes.length, L = x[x.length - 1], h = L / 8;
     const place = Math.round(state.x * (x.length - 1));
     const here = [];
+    let sum = 0;
     for (const [name, values, unit] of [["N", N, 1], ["slope", slope, 1 / h]]) {
       let most = 0;
       for (const y of values) most = Math.max(most, Math.abs(y) / unit);
@@ -415,12 +416,12 @@
         const ys = Float64Array.from(x, (_, n) => of(n));
         picture.line(cells, ys, css(seenHere ? (I % 2 ? "--lab-blue" : "--lab-orange") : "--lab-line"), seenHere ? 1.8 : 1);
         if (seenHere) picture.dots([cells[place]], [of(place)], css(I % 2 ? "--lab-blue" : "--lab-orange"), 3.4);
-        if (seenHere && name === "N") here.push(round(of(place)));
+        if (seenHere && name === "N") { here.push(round(of(place))); sum += of(place); }
       }
       picture.cursor(cells[place]);
       if (name === "N") picture.dots(nodes.map((x) => x / h), nodes.map(() => 0), css("--fg"), 2);
     }
-    $("shape-words").textContent = `At x/h = ${round(x[place] / h)} the bar sees ${here.length} nodes: N = ${here.join(", ")}; their sum is ${round(here.reduce((a, b) => a + b, 0))}.`;
+    $("shape-words").textContent = `At x/h = ${round(x[place] / h)} the bar sees ${here.length} nodes: N = ${here.join(", ")}; their sum is ${round(sum)}.`;
   }
 
   function draw() {
@@ -494,7 +495,7 @@
     const given = new URLSearchParams(location.hash.slice(1));
     if (![...given.values()].some(Boolean)) return false;
     const preset = given.get("preset");
-    state = { ...start, x: 0.4, ...(presets[preset] ? presets[preset].set : {}), preset: presets[preset] ? preset : "" };
+    state = { ...start, x: 0.4, jump: 0.3, ...(presets[preset] ? presets[preset].set : {}), preset: presets[preset] ? preset : "" };
     for (const [name, value] of given) {
       if (!(name in start)) continue;
       const old = start[name];
@@ -524,7 +525,7 @@
     for (const [name, preset] of Object.entries(presets)) {
       const button = document.createElement("button");
       button.type = "button"; button.value = name; button.textContent = preset.name;
-      button.addEventListener("click", () => { state = { ...start, x: 0.4, ...preset.set, preset: name, field: state.field }; frame = 1e9; change(true); });
+      button.addEventListener("click", () => { state = { ...start, x: 0.4, jump: 0.3, ...preset.set, preset: name, field: state.field }; change(true); });
       $("presets").append(button);
     }
     for (const name in sliders) {
@@ -604,8 +605,7 @@
   script.src = lab.dataset.solver;
   script.onload = () => {
     build();
-    if (!read()) state = { ...start, x: 0.4, preset: "dispersion" };
-    if (state.preset === "light") state.x = 1;
+    if (!read()) state = { ...start, x: 0.4, jump: 0.3, preset: "dispersion" };
     lab.classList.add("lab-on");
     compute(); show();
     lab.dataset.ready = Math.round(performance.now() - began);
