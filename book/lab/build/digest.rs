@@ -16,21 +16,25 @@ const SOURCES: [&str; 9] = [
     "src/setup",
 ];
 
+/// FNV-1a begins with this.
+pub const START: u64 = 0xcbf2_9ce4_8422_2325;
+
+/// Takes FNV-1a on from `hash` over `bytes`.
+pub fn fnv(hash: u64, bytes: &[u8]) -> u64 {
+    let one = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    bytes.iter().fold(hash, one)
+}
+
 /// Gives FNV-1a over names and bytes of all sources below `root`, in hexadecimal digits.
 pub fn of_sources(root: &Path) -> std::io::Result<String> {
-    let mut hash = 0xcbf2_9ce4_8422_2325;
-    let mut add = |bytes: &[u8]| {
-        for byte in bytes {
-            hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    };
+    let mut hash = START;
     for source in SOURCES {
         let mut files = Vec::new();
         below(&root.join(source), &mut files)?;
         files.sort();
         for file in files {
-            add(file.strip_prefix(root).unwrap_or(&file).to_string_lossy().as_bytes());
-            add(&fs::read(&file)?);
+            let name = file.strip_prefix(root).unwrap_or(&file).to_string_lossy();
+            hash = fnv(fnv(hash, name.as_bytes()), &fs::read(&file)?);
         }
     }
     Ok(format!("{hash:016x}"))

@@ -451,7 +451,7 @@
     // A thumb is 16 px wide, and its middle does not reach the ends.
     sign.style.left = `calc(8px + ${place} * (100% - 16px))`;
     $("cfl").setAttribute("aria-describedby", "lab-limit");
-    $("limit").textContent = limit > 0 && isFinite(limit) ? `the limit is ${limit.toPrecision(4)}` : "no limit is known";
+    $("limit").textContent = limit > 0 && isFinite(limit) ? `c Δt/h: the limit is ${limit.toPrecision(4)}` : "no limit is known";
   }
   function show() {
     for (const name in sliders) {
