@@ -82,9 +82,21 @@ const sharp = number(await preset(page, "otm"), "of u");
 check(sharp < 0.002, `OTM: ${sharp} %`);
 await slide(page, "cfl", (1000 * Math.log(0.9 / 0.05)) / Math.log(6 / 0.05));
 check(number(await say(page, "figures"), "of u") > 100 * sharp, "OTM below Courant one");
+await preset(page, "rotation");
+await page.waitForTimeout(2500);
+check(/angular momentum has changed|has turned by/.test((await say(page, "figures")) + (await say(page, "error"))), "rotation is warned of");
+await choose(page, "law", "neo-hookean");
+await page.waitForTimeout(2500);
+check(!/has turned by/.test((await say(page, "figures")) + (await say(page, "error"))), "the neo-Hookean law turns with the material");
+check((await drawn("plane")) > 800, "the discs are drawn");
+await choose(page, "mass", "consistent");
+await slide(page, "cells", 100);
+await page.waitForTimeout(900);
+check(/hold up the page/.test(await say(page, "error")), "a long run is left to the command line");
 const links = await page.locator('[data-lab="presets"] button').count();
 for (let n = 0; n < links; n++) {
   await page.locator('[data-lab="presets"] button').nth(n).click();
+  await page.waitForTimeout(150);
   const link = await page.locator('[data-lab="words"] a').getAttribute("href");
   const [file, place] = link.split("#");
   check(readFileSync(path.join(root, "target/book", file), "utf8").includes(`id="${place}"`), `${link} leads somewhere`);
@@ -139,7 +151,7 @@ for (const width of [1400, 500]) for (const theme of ["light", "navy"]) {
   check(over <= 0, `${width} px: ${over} px too wide`);
   if (shots) await one.screenshot({ path: path.join(shots, `lab-${width}-${theme}.png`), fullPage: true });
 }
-if (shots) for (const name of ["dispersion", "lumping", "smooth", "limit", "crossing", "light", "otm"]) {
+if (shots) for (const name of ["dispersion", "lumping", "smooth", "limit", "crossing", "light", "otm", "rotation"]) {
   const one = await open(1400, `#preset=${name}`);
   await one.locator("#lab").screenshot({ path: path.join(shots, `preset-${name}.png`) });
 }

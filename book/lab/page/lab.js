@@ -21,11 +21,12 @@
     cfl: { least: 0.05, most: 6, log: true },
     throw: { least: 0.5, most: 500, log: true },
     swing: { least: 0.001, most: 0.3, log: true },
+    hit: { least: 0.02, most: 0.4, log: true },
   };
   const start = {
     motion: "thrown", method: "mpm", basis: "linear", gamma: 0.8, mass: "lumped",
     integrator: "newmark", stress: "first", rho_b: 0.8, cells: 40, ppc: 2, cfl: 0.5,
-    blowup: false, throw: 5, swing: 0.0625, probe: 0, field: "v",
+    blowup: false, throw: 5, swing: 0.0625, hit: 0.1, law: "rate", probe: 0, field: "v",
   };
   const presets = {
     dispersion: {
@@ -60,7 +61,14 @@
       name: "OTM at Courant one", set: { method: "otm", ppc: 1, cfl: 1 }, link: ["otm.html#exercise", "OTM: nodes that move"],
       words: "With the linear basis and one point in a cell OTM is linear finite elements, and at a Courant number of one the central difference is exact in one dimension. Displacements are right to five digits and fronts as sharp as the grid; take a tenth off the Courant number, and waves trail behind them again.",
     },
+    rotation: {
+      name: "Rotation", set: { motion: "discs", cells: 16, cfl: 0.2, probe: 2, jump: 1 },
+      link: ["extremes.html#when-a-result-is-not-to-be-trusted", "At the extremes"],
+      words: "Two discs meet off centre and turn about each other; momentum is kept to its last digits, and angular momentum is not, since the trip to the nodes and back smears it. The rate law does not turn the stress with the material, so the program warns of it or stops; choose the neo-Hookean law, which does.",
+    },
   };
+  const scenes = { thrown: "dyka", kept: "manufactured", discs: "colliding-discs" };
+  const plane = () => state.motion === "discs";
 
   let state = { ...start, preset: "dispersion", x: 0.4 };
   let frame = 0, playing = false, seen = null, shapes = null, began = performance.now();
@@ -81,7 +89,7 @@
   // Asks the program; the answer is an object of parts.
   function ask(name, number, sets) {
     if (!program) instantiate();
-    const scene = window.LAB_SOLVER.scenes[state.motion === "kept" ? "manufactured" : "dyka"];
+    const scene = window.LAB_SOLVER.scenes[scenes[state.motion]];
     const request = new TextEncoder().encode([number, scene, ...sets].join("\0"));
     try {
       const at = program.alloc(request.length);
@@ -117,17 +125,22 @@
     if (s.integrator !== "newmark") put("time.integrator", s.integrator);
     if (s.integrator === "forward-euler") put("time.stress_update", s.stress);
     if (s.integrator === "generalized-alpha") put("time.rho_b", s.rho_b);
-    if (s.cells !== 40 || s.motion === "kept") put("grid.cells", s.cells);
-    if (s.ppc !== 2) put("grid.particles_per_cell", s.ppc);
+    const each = (n) => (plane() ? `[${n},${n}]` : n);
+    if (s.cells !== 40 || s.motion !== "thrown") put("grid.cells", each(s.cells));
+    if (s.ppc !== 2) put("grid.particles_per_cell", each(s.ppc));
+    if (plane() && s.law !== "rate") put("body.law", s.law);
     put("time.cfl", s.cfl);
     if (s.blowup) { put("time.allow_unstable", true); put("check.energy", 1e6); }
     if (s.motion === "kept") put("manufactured.amplitude", s.swing);
-    else if (s.throw !== 5) put("initial_velocity.0.velocity", s.throw);
+    else if (plane()) {
+      put("initial_velocity.0.velocity", `[${s.hit},${round(0.6 * s.hit)}]`);
+      put("initial_velocity.1.velocity", `[${-s.hit},${-round(0.6 * s.hit)}]`);
+    } else if (s.throw !== 5) put("initial_velocity.0.velocity", s.throw);
     return out;
   }
   const command = () =>
-    `lme-mpm run data/scenes/${state.motion === "kept" ? "manufactured" : "dyka"}.toml` +
-    sets().map((set) => ` --set ${set}`).join("");
+    `lme-mpm run data/scenes/${scenes[state.motion]}.toml` +
+    sets().map((set) => ` --set ${/[[\]]/.test(set) ? `'${set}'` : set}`).join("");
 
   // --- From an answer to what is drawn ---------------------------------------------------
 
@@ -143,8 +156,25 @@
     return out;
   }
 
+  // Estimates the work of a run, in pairs of particles and nodes; a page bears some seconds.
+  const MOST = 1e8;
+  function work() {
+    const s = state, axes = plane() ? 2 : 1;
+    const steps = ({ thrown: 4, kept: 2, discs: 4.1 }[s.motion] * s.cells) / s.cfl;
+    const along = s.basis === "linear" ? 2 : s.basis === "lme" ? 2 * Math.sqrt(13.8 / s.gamma) + 1 : 3;
+    const nodes = (s.cells + 2) ** axes, band = 2 * along * (axes === 2 ? s.cells + 2 : 1);
+    return steps * ((s.cells * s.ppc * along) ** axes + (s.mass === "consistent" ? (nodes * band * band) / 5 : 0));
+  }
+
   function compute() {
     const before = performance.now();
+    $("command").textContent = command();
+    lab.classList.toggle("lab-plane", plane());
+    if (work() > MOST) {
+      $("error").textContent = "This run would hold up the page for long; the command below does it elsewhere. Fewer cells, or the lumped mass, take less.";
+      lab.classList.add("lab-stale");
+      return;
+    }
     const limit = ask("limit", 0, sets());
     seen = seen || {};
     mark(list(limit.limit)[1]);
@@ -153,7 +183,6 @@
     const error = text(answer.error);
     $("error").textContent = error || (answer.broken ? `the run broke down: ${text(answer.broken)}` : "");
     lab.classList.toggle("lab-stale", Boolean(error));
-    $("command").textContent = command();
     if (error) { draw(); return; }
     const atEnd = !seen.t || frame >= seen.t.length - 1;
     const history = table(answer, "history"), particles = table(answer, "particles");
@@ -165,12 +194,13 @@
       samples: t.length ? exact.length / 3 / t.length : 0,
       summary: Object.fromEntries(names.map((name, i) => [name, values[i]])),
       warnings: text(answer.warnings), broken: Boolean(answer.broken),
+      plane: plane(),
       end: t.length ? Math.max(t[t.length - 1], 1e-300) : 1,
     };
     const fixed = ["step", "t", "kinetic_energy", "strain_energy", "work", "momentum"];
     seen.probes = history.columns.filter((name) => !fixed.includes(name) && !name.endsWith("_exact"));
     seen.peak = { v: peak(1), s: peak(2) };
-    seen.room = [0, room("velocity", seen.peak.v), room("stress", seen.peak.s)];
+    seen.room = plane() ? null : [0, room("velocity", seen.peak.v), room("stress", seen.peak.s)];
     seen.map = null;
     frame = atEnd ? Math.max(t.length - 1, 0) : Math.min(frame, Math.max(t.length - 1, 0));
     if (state.jump !== undefined) { frame = Math.round(state.jump * (t.length - 1)); delete state.jump; }
@@ -183,6 +213,7 @@
 
   // The functions are drawn on eight cells, where one can tell them apart.
   function shape() {
+    if (plane()) { shapes = null; return; }
     const few = sets().filter((set) => !/^grid\.cells/.test(set)).concat("grid.cells=8");
     const answer = ask("shape", 481, few);
     shapes = answer.error ? { error: text(answer.error) } : {
@@ -296,6 +327,24 @@
   }
   const length = () => (state.motion === "kept" ? 1 : 0.1333);
 
+  // The discs; what was on one side of each stays in its colour, so that one sees them turn.
+  function drawPlane() {
+    const canvas = $("plane"), width = canvas.clientWidth;
+    const [pen, , height] = open(canvas, Math.min(width, 460));
+    const scale = height / 1.2, X = (x) => width / 2 + (x - 0.5) * scale, Y = (y) => height / 2 - (y - 0.5) * scale;
+    pen.strokeStyle = css("--lab-line");
+    pen.strokeRect(X(0), Y(1), scale, scale);
+    if (!seen.t.length) return;
+    const [x, y, u, v] = ["position_x", "position_y", "displacement_x", "displacement_y"].map((name) => at(name, frame));
+    const size = Math.max(1.5, (0.32 * scale) / (state.cells * state.ppc));
+    for (let p = 0; p < x.length; p++) {
+      const [a, b] = [x[p] - u[p], y[p] - v[p]], middle = a + b < 1 ? 0.2 : 0.8;
+      pen.fillStyle = css(a < middle === b < middle ? "--lab-blue" : "--lab-orange");
+      pen.beginPath(); pen.arc(X(x[p]), Y(y[p]), size, 0, 7); pen.fill();
+    }
+    canvas.setAttribute("aria-label", `${x.length} particles of two discs at ${seen.t[frame].toPrecision(3)} s`);
+  }
+
   function drawBar() {
     for (const [name, field, of] of [["v", 1, "velocity"], ["s", 2, "stress"]]) {
       const most = seen.room[field];
@@ -378,7 +427,7 @@
     if (exact) picture.line(t, exact.map((x) => x / unit), css("--lab-grey"), 3);
     picture.line(t, value.map((x) => x / unit), css("--lab-blue"));
     picture.cursor(seen.t[frame]);
-    $("probe-unit").textContent = unit === 1e6 ? "(MPa)" : unit === 1e-3 ? "(mm)" : /stress/.test(probe) ? "(Pa)" : "(m/s)";
+    $("probe-unit").textContent = unit === 1e6 ? "(MPa)" : unit === 1e-3 ? "(mm)" : /stress/.test(probe) ? "(Pa)" : /angular/.test(probe) ? "(kg m²/s)" : /momentum/.test(probe) ? "(kg m/s)" : "(m/s)";
   }
 
   function drawEnergy() {
@@ -429,9 +478,11 @@
     $("frame").value = frame;
     $("now").textContent = seen.t.length ? `t = ${seen.t[frame].toExponential(2)} s` : "";
     $("frame").setAttribute("aria-valuetext", $("now").textContent);
-    drawBar();
-    if (seen.t.length) { drawMap(); drawProbe(); drawEnergy(); }
-    drawShape();
+    // What is seen may still be that of another motion, while this one is refused.
+    if (seen.plane !== plane()) return;
+    if (plane()) drawPlane();
+    else { drawBar(); drawShape(); }
+    if (seen.t.length) { if (!plane()) drawMap(); drawProbe(); drawEnergy(); }
   }
 
   // --- Controls --------------------------------------------------------------------------
@@ -459,7 +510,7 @@
       $(`${name}-out`).textContent = state[name];
       $(name).setAttribute("aria-valuetext", state[name]);
     }
-    for (const name of ["motion", "method", "basis", "mass", "integrator", "stress", "field"]) $(name).value = state[name];
+    for (const name of ["motion", "method", "basis", "mass", "integrator", "stress", "law", "field"]) $(name).value = state[name];
     $("blowup").checked = state.blowup;
     $("x").value = state.x * 480;
     const showRow = (name, on) => ($(name).closest(".lab-row").hidden = !on);
@@ -468,6 +519,8 @@
     showRow("stress", state.integrator === "forward-euler");
     showRow("throw", state.motion === "thrown");
     showRow("swing", state.motion === "kept");
+    showRow("hit", plane());
+    showRow("law", plane());
     for (const button of $("presets").children) button.setAttribute("aria-pressed", button.value === state.preset);
     const preset = presets[state.preset];
     $("words").replaceChildren();
@@ -517,6 +570,7 @@
   }
   function set(name, value) {
     state[name] = value;
+    if (name === "motion") Object.assign(state, { cells: value === "discs" ? 16 : 40, probe: 0 });
     if (!["field", "probe"].includes(name)) state.preset = "";
     change(false);
   }
@@ -533,7 +587,7 @@
       Object.assign(input, log ? { min: 0, max: 1000, step: 1 } : { min: least, max: most, step: sliders[name].whole ? 1 : 0.05 });
       input.addEventListener("input", () => set(name, fromSlider(name, input.value)));
     }
-    for (const name of ["motion", "method", "basis", "mass", "integrator", "stress"]) $(name).addEventListener("change", () => set(name, $(name).value));
+    for (const name of ["motion", "method", "basis", "mass", "integrator", "stress", "law"]) $(name).addEventListener("change", () => set(name, $(name).value));
     $("blowup").addEventListener("change", () => set("blowup", $("blowup").checked));
     $("probe-name").addEventListener("change", () => { state.probe = Number($("probe-name").value); write(); figures(); draw(); });
     $("field").addEventListener("change", () => { state.field = $("field").value; write(); draw(); });
