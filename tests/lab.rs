@@ -70,6 +70,9 @@ fn text(parts: &BTreeMap<String, Vec<u8>>, name: &str) -> String {
     parts.get(name).map_or(String::new(), |part| String::from_utf8(part.clone()).unwrap())
 }
 
+/// With it nobody predicts a limit, which in 2D and 3D would take longer than the run.
+const FREE: &str = "time.allow_unstable=true";
+
 /// Name, text and changes of a scene.
 type Case = (String, &'static str, Vec<String>);
 
@@ -94,14 +97,21 @@ fn cases() -> Vec<Case> {
     for shipped in SHIPPED {
         let sets: &[&str] = match shipped.name {
             "manufactured" | "free-flight" | "periodic-bar" => &["grid.cells=16"],
-            "axis-aligned" => &["grid.cells=[3,3,3]", "time.end=0.01"],
-            "vortex" => &["grid.cells=[6,6]", "time.end=0.1"],
-            "colliding-discs" => &["grid.cells=[6,6]", "time.end=1"],
+            "axis-aligned" => &[FREE, "grid.cells=[3,3,3]", "time.end=0.004"],
+            "vortex" => &[FREE, "grid.cells=[6,6]", "time.end=0.2"],
+            "colliding-discs" => &[FREE, "grid.cells=[6,6]", "time.end=1"],
             _ => &["grid.cells=20"],
         };
         cases.push((shipped.name.to_string(), shipped.text, owned(sets)));
     }
-    let ball = &["grid.cells=[6,6]", "basis.kind=lme", "basis.gamma=1.8", "basis.support=ball"];
+    let ball = &[
+        FREE,
+        "grid.cells=[6,6]",
+        "time.end=1",
+        "basis.kind=lme",
+        "basis.gamma=1.8",
+        "basis.support=ball",
+    ];
     cases.push(("discs, LME in a ball".to_string(), DISCS, owned(ball)));
     let far = &["time.cfl=1.75", "time.allow_unstable=true", "check.energy=1e6"];
     cases.push(("one percent above √3".to_string(), DYKA, owned(far)));
@@ -116,7 +126,6 @@ fn lab_has_the_same_bits() {
     let cases = cases();
     assert!(cases.len() > 90, "{}", cases.len());
     for (name, scene, sets) in &cases {
-        let began = std::time::Instant::now();
         let request: Vec<&str> = ["0", scene].into_iter().chain(strs(sets)).collect();
         let parts = lab.ask("history", &request);
         let own = parse("test", "scene", scene, sets).unwrap_or_else(|error| panic!("{error}"));
@@ -128,10 +137,9 @@ fn lab_has_the_same_bits() {
         assert_eq!(text(&parts, "broken"), broken, "{name}");
         assert_eq!(text(&parts, "history.columns"), history.columns.join("\n"), "{name}");
         let bits: Vec<u8> = history.rows().flatten().flat_map(|x| x.to_le_bytes()).collect();
-        assert!(bits.len() > 500, "{name}");
+        assert!(bits.len() > 300, "{name}");
         assert_eq!(parts["history"], bits, "{name}");
         assert_eq!(parts["csv"], history.csv().unwrap(), "{name}");
-        eprintln!("{name} {:?}", began.elapsed());
     }
 }
 

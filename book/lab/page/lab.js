@@ -243,8 +243,8 @@
     if (s.stress_field_rms_relative !== undefined) words.push(`of σ ${percent(s.stress_field_rms_relative)}`);
     if (s.displacement_field_rms_relative !== undefined) words.push(`of u ${percent(s.displacement_field_rms_relative)}`);
     if (s.energy_drift !== undefined) words.push(`energy ${s.energy_drift < 0 ? "−" : "+"}${percent(Math.abs(s.energy_drift))}`);
-    const [particles, , steps] = seen.sizes;
-    words.push(`${particles} particles, ${steps} steps`);
+    const [, , steps] = seen.sizes;
+    words.push(`${seen.count} particles, ${steps} steps`);
     if (seen.limit.length && isFinite(seen.limit[1])) words.push(`limit of c Δt/h ${seen.limit[1].toPrecision(4)}`);
     words.push(`computed here in ${seen.took.toFixed(0)} ms`);
     $("figures").textContent = words.join("; ") + "." + (seen.warnings ? ` Warning: ${seen.warnings}` : "");
