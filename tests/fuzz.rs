@@ -7,9 +7,9 @@
 
 use crate::support::*;
 use lme_mpm::method::breakdown::Breakdown;
-use lme_mpm::output::report::stable;
 use lme_mpm::run::parse_within;
 use lme_mpm::run::run_knowing;
+use lme_mpm::run::stability::runnable;
 use lme_mpm::run::table::Table;
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::keys::{AXES, KEYS, SIDES};
@@ -271,7 +271,7 @@ fn outcome_of(text: &str, sets: &[String], budget: &Budget, steps: usize, pairs:
     if scene.sizes().0 * scene.pairs_per_particle() > pairs {
         return "read".to_string();
     }
-    let limit = match stable(&scene) {
+    let limit = match runnable(&scene) {
         Ok(limit) => limit,
         Err(Fault::Unstable { courant, largest, .. }) => {
             assert!(!courant.is_nan() && !largest.is_nan() && courant > largest);

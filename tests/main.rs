@@ -21,6 +21,7 @@ mod guards;
 mod house;
 mod hull;
 mod integrators;
+mod lab;
 mod laws;
 mod lme;
 mod lme_box;

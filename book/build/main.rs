@@ -11,6 +11,8 @@ mod listing;
 mod maths;
 
 use anyhow::{Context, Result, bail};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use mdbook_driver::MDBook;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -57,6 +59,7 @@ fn build(arguments: &[String]) -> Result<()> {
         fs::create_dir_all(html.join("figures"))?;
         fs::copy(root().join(figure), &to).with_context(|| format!("cannot copy {figure}"))?;
     }
+    lab(&html.join("lab"))?;
     let counted = check::pages(&html)?;
     println!("{counted}");
     let first = html.join("index.html").canonicalize()?;
@@ -65,6 +68,25 @@ fn build(arguments: &[String]) -> Result<()> {
         opener::open(&first)?;
     }
     Ok(())
+}
+
+/// Puts the page's solver and its scenes into `to` as a script, because a page that is opened from
+/// a disk may load no other file, and beside it what draws.
+fn lab(to: &Path) -> Result<()> {
+    copy_into(&root().join("book/lab/page"), to)?;
+    let wasm =
+        fs::read(root().join("book/lab/lab.wasm")).context("cannot read book/lab/lab.wasm")?;
+    let mut scenes = String::new();
+    for name in ["dyka", "manufactured", "colliding-discs"] {
+        let text = read(&format!("data/scenes/{name}.toml"))?;
+        // A string of Rust is one of JavaScript.
+        scenes.push_str(&format!("{name:?}: {text:?}, "));
+    }
+    let script = format!(
+        "window.LAB_SOLVER = {{ scenes: {{ {scenes}}}, wasm: \"{}\" }};\n",
+        STANDARD.encode(wasm)
+    );
+    fs::write(to.join("solver.js"), script).context("cannot write lab/solver.js")
 }
 
 fn copy_into(from: &Path, to: &Path) -> Result<()> {

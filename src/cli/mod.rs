@@ -11,9 +11,10 @@ use arguments::{Arguments, BasisName, Command, Scenes, ShapeArguments};
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 use lme_mpm::method::basis::{Basis, Degree, Support};
-use lme_mpm::output::{files, report};
+use lme_mpm::output::files;
 use lme_mpm::port::check::{self, Asked, Tolerance};
 use lme_mpm::port::points::{self, Points};
+use lme_mpm::run::stability;
 use lme_mpm::scene::fault::Fault;
 use lme_mpm::scene::schema::schema;
 use lme_mpm::scene::{SHIPPED, declare, shipped};
@@ -160,7 +161,7 @@ fn trace(
     let scene = predicting(false, || {
         let scene = files::scene(path, sets, &machine::budget(false))?;
         lme_mpm::port::trace::affordable(&scene, steps)?;
-        report::stable(&scene).map_err(|fault| placed(fault, &scene, path, sets))?;
+        stability::runnable(&scene).map_err(|fault| placed(fault, &scene, path, sets))?;
         Ok::<_, Fault>(scene)
     })?;
     let place = out.filter(|out| *out != Path::new("-"));

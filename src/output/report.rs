@@ -6,7 +6,7 @@ use super::summary::{self, SummaryLine};
 use super::{figure, vtk};
 use crate::method::breakdown::Breakdown;
 use crate::method::choice::Mass;
-use crate::run::stability::{self, Critical};
+use crate::run::stability::runnable;
 use crate::run::table::{Table, csv, shortest};
 use crate::run::{Stopped, Warning, run_knowing};
 use crate::scene::Scene;
@@ -15,34 +15,11 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-/// A Δt above this multiple of the predicted limit blows up for certain: the margin
-/// is the prediction's own, and that of particles on their first way.
-const CERTAIN: f64 = 1.002;
-
 /// The history of a run that broke down is left here.
 const FAILED: &str = "history.failed.csv";
 
 /// The particles at the end are drawn here, in 2D and 3D.
 const PICTURE: &str = "particles.svg";
-
-/// Gives the predicted limit of Δt; `None` where it cannot be predicted, and the scene
-/// breaks down by its own name.
-///
-/// Errors: [`Fault::Unstable`] for a scene whose Δt is above that of its start, unless it
-/// allows that.
-pub fn stable(scene: &Scene) -> Result<Option<Critical>, Fault> {
-    let Ok(limit) = stability::critical(scene) else {
-        return Ok(None);
-    };
-    if scene.time.end / scene.sizes().2 <= limit.start * CERTAIN || scene.time.allow_unstable {
-        return Ok(Some(limit));
-    }
-    Err(Fault::Unstable {
-        courant: scene.courant_number(),
-        largest: scene.courant_number_of(limit.used()),
-        singular: scene.mass == Mass::Consistent && scene.grid.particles_per_cell.contains(&1),
-    })
-}
 
 /// A run is done: its results are written.
 #[derive(Debug)]
@@ -71,7 +48,7 @@ pub fn run_into(
     scene: &Scene,
     progress: &mut dyn FnMut(usize) -> ControlFlow<Breakdown>,
 ) -> Result<Done, Fault> {
-    let limit = stable(scene)?;
+    let limit = runnable(scene)?;
     prepare(dir)?;
     let start = Instant::now();
     let outcome = match run_knowing(scene, limit, progress) {

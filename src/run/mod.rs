@@ -85,7 +85,8 @@ fn run_in<const D: usize>(
         Ok(())
     };
     if let Err(broken) = march() {
-        return Err(Box::new(Stopped { broken, history: recorder.history }));
+        let Recorder { history, frames, .. } = recorder;
+        return Err(Box::new(Stopped { broken, history, frames }));
     }
     let bytes_per_particle = model.bytes_per_particle() as u64;
     let limit_applications = guards.as_ref().map_or(0, Guards::limit_applications);

@@ -40,4 +40,6 @@ pub struct Frame {
 pub struct Stopped {
     pub broken: BrokenDown,
     pub history: Table,
+    /// The particles at the recorded steps, if the scene asks for them.
+    pub frames: Vec<Frame>,
 }

@@ -25,5 +25,5 @@ pub use lanczos::Tridiagonal;
 pub use march::{grows, measured};
 pub use noise::noise;
 pub use operator::Operator;
-pub use predict::{Critical, at_offset, critical, limit, over_offsets, predicted};
+pub use predict::{Critical, at_offset, critical, limit, over_offsets, predicted, runnable};
 pub use watch::{Balance, Watch};

@@ -12,6 +12,7 @@ use crate::method::continuum::state::Particles;
 use crate::method::grid::odometer;
 use crate::method::model::{Model, State};
 use crate::method::time::{otm, steps};
+use crate::scene::fault::Fault;
 use crate::scene::{Motion, Scene};
 use crate::setup;
 use nalgebra::{SMatrix, SVector};
@@ -45,6 +46,10 @@ const BESIDE: f64 = 1e-9;
 const STEPS: [usize; 3] = [16, 16, 4];
 const PLACES: usize = 32;
 
+/// A Δt above this multiple of the predicted limit blows up for certain: the margin
+/// is the prediction's own, and that of particles on their first way.
+const CERTAIN: f64 = 1.002;
+
 /// This is what is known of the limit of Δt before a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Critical {
@@ -70,6 +75,25 @@ pub fn critical(scene: &Scene) -> Result<Critical, Breakdown> {
     let moves = !scene.method.moves_nodes() && scene.travel() > MOVES;
     let over_offsets = if moves { Some(over_offsets(scene)?.min(start)) } else { None };
     Ok(Critical { start, over_offsets })
+}
+
+/// Gives the predicted limit of Δt; `None` where it cannot be predicted, and the scene
+/// breaks down by its own name.
+///
+/// Errors: [`Fault::Unstable`] for a scene whose Δt is above that of its start, unless it
+/// allows that.
+pub fn runnable(scene: &Scene) -> Result<Option<Critical>, Fault> {
+    let Ok(limit) = critical(scene) else {
+        return Ok(None);
+    };
+    if scene.time.end / scene.sizes().2 <= limit.start * CERTAIN || scene.time.allow_unstable {
+        return Ok(Some(limit));
+    }
+    Err(Fault::Unstable {
+        courant: scene.courant_number(),
+        largest: scene.courant_number_of(limit.used()),
+        singular: scene.mass == Mass::Consistent && scene.grid.particles_per_cell.contains(&1),
+    })
 }
 
 /// Finds the largest stable Δt (s) of a tabulated state with masses, by Lanczos's method.
