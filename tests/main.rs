@@ -30,6 +30,7 @@ mod mass;
 mod matrix;
 mod mistakes;
 mod one_bar;
+mod one_particle;
 mod orders;
 mod otm;
 mod otm_action;
