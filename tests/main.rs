@@ -11,6 +11,7 @@ mod cli;
 mod conformance;
 mod conservation;
 mod convergence;
+mod dispersion;
 mod exact;
 mod extremes;
 mod extremes_of_scenes;

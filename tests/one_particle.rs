@@ -106,7 +106,7 @@ fn one_particle_in_one_file() {
 /// What the chapter's table tells, row by row: step, words, symbol in the trace, index, unit.
 const ROWS: [(usize, &str, &str, usize, &str); 19] = [
     (1, "place of the particle", "x_p", 0, "m"),
-    (1, "its velocity, half renewed", "v_p", 0, "m/s"),
+    (1, "its velocity after half of the change", "v_p", 0, "m/s"),
     (2, "share N of node 0", "N_Ip", 0, "–"),
     (2, "share N of node 1", "N_Ip", 1, "–"),
     (3, "mass of node 0", "m_I", 0, "kg"),
@@ -114,7 +114,7 @@ const ROWS: [(usize, &str, &str, usize, &str); 19] = [
     (3, "mass of node 2", "m_I", 2, "kg"),
     (3, "momentum of node 0", "p_I", 0, "kg m/s"),
     (3, "momentum of node 1", "p_I", 1, "kg m/s"),
-    (4, "velocity of node 0, which is held", "v_I", 0, "m/s"),
+    (4, "velocity of node 0 (held)", "v_I", 0, "m/s"),
     (4, "velocity of node 1", "v_I", 1, "m/s"),
     (5, "increment of the strain", "d_eps_p", 0, "–"),
     (6, "density", "rho_p", 0, "kg/m³"),
@@ -123,7 +123,7 @@ const ROWS: [(usize, &str, &str, usize, &str); 19] = [
     (7, "force on node 1", "f_I", 1, "N"),
     (8, "momentum of node 1 after half of the push", "p_I_advanced", 1, "kg m/s"),
     (9, "acceleration that reaches the particle", "a_p", 0, "m/s²"),
-    (9, "its velocity, renewed", "v_p", 0, "m/s"),
+    (9, "its velocity after all of the change", "v_p", 0, "m/s"),
 ];
 
 /// The chapter's table, and the same numbers by name for its sentences: `m_I[1]@1.3` is the
@@ -214,8 +214,8 @@ fn to_nodes(made: &Made) -> Panel {
     for I in [0, 1] {
         let node = Panel::at(I as f64);
         panel.arrow((Panel::at(x), 90.0), (node, 138.0), BLUE, "blue");
-        let beside = if I == 0 { node + 8.0 } else { node + 34.0 };
-        panel.words(beside, 116.0, BLUE, &format!("N = {}", made.says(1, 2, "N_Ip", I)));
+        let beside = if I == 0 { node - 6.0 } else { node + 34.0 };
+        panel.words(beside, 112.0, BLUE, &format!("N = {}", made.says(1, 2, "N_Ip", I)));
     }
     for I in [0, 1, 2] {
         let node = Panel::at(I as f64);
@@ -236,9 +236,10 @@ fn solve(made: &Made) -> Panel {
     panel.words(Panel::at(x) + 20.0, 68.0, BLUE, &format!("strain {strain}, stress {stress} Pa"));
     panel.arrow((node + 8.0, 138.0), (node + 62.0, 138.0), GREEN, "green");
     panel.words(node + 62.0, 126.0, GREEN, &format!("v = {} m/s", made.says(1, 4, "v_I", 1)));
-    panel.arrow((node - 8.0, 164.0), (node - 62.0, 164.0), RED, "red");
+    panel.arrow((node - 8.0, 138.0), (node - 62.0, 138.0), RED, "red");
+    panel.words(node - 62.0, 126.0, RED, &format!("force {} N", made.says(1, 7, "f_I", 1)));
     panel.words(Panel::at(0.0), 202.0, INK, "held");
-    panel.words(node + 20.0, 202.0, RED, &format!("force {} N", made.says(1, 7, "f_I", 1)));
+    panel.words(node + 20.0, 202.0, INK, "momentum");
     let (before, after) = (made.says(1, 3, "p_I", 1), made.says(1, 8, "p_I_advanced", 1));
     panel.words(node + 20.0, 222.0, INK, &format!("{before} → {after} kg m/s"));
     panel
@@ -268,7 +269,7 @@ fn forget(made: &Made) -> Panel {
     let v = made.says(2, 1, "v_p", 0);
     panel.words(150.0, 68.0, BLUE, &format!("kept: place {} m, {v} m/s,", short(x)));
     let (stress, density) = (made.says(1, 6, "sigma_p", 0), made.says(1, 6, "rho_p", 0));
-    panel.words(196.0, 120.0, BLUE, &format!("{stress} Pa, {density} kg/m³"));
+    panel.words(210.0, 96.0, BLUE, &format!("{stress} Pa, {density} kg/m³"));
     panel.words(150.0, 212.0, "#666666", "what the nodes held is gone");
     panel
 }
