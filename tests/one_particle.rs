@@ -30,11 +30,11 @@ impl Made {
     }
 }
 
-/// A number to four decimals, without zeros at its end, with a proper minus.
+/// A number to four decimals, without zeros at its end.
 fn short(x: f64) -> String {
     let rounded = format!("{x:.4}");
     let short = rounded.trim_end_matches('0').trim_end_matches('.');
-    short.replace('-', if short == "-0" { "" } else { "−" })
+    if short == "-0" { "0".into() } else { short.into() }
 }
 
 /// k = 1 worked with a pencil: Δt = 0.2 s, h = 1 m, m = 2 kg, E = 10 Pa, v = 1 m/s, x = ½ m at
@@ -159,6 +159,7 @@ impl Panel {
     }
 
     fn words(&mut self, x: f64, y: f64, colour: &str, says: &str) {
+        let says = says.replace('-', "−");
         writeln!(
             self.0,
             "<text x=\"{x:.1}\" y=\"{y}\" fill=\"{colour}\" text-anchor=\"middle\">{says}</text>"
