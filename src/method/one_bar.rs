@@ -47,6 +47,7 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
     for k in 0..=bar.steps {
         // The time step k = 0 moves nothing: it gives the nodes their first values.
         let dt = if k == 0 { 0.0 } else { bar.dt };
+        // ANCHOR: one_bar_predict
         // Step 1, the predictor: (27) and (28), with γ = ½ and the nodal values of k.
         for p in 0..particles {
             let (mut v, mut a) = (0.0, 0.0);
@@ -57,6 +58,8 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
             x_p[p] += v * dt + a * (0.5 * dt * dt);
             v_p[p] += a * (0.5 * dt);
         }
+        // ANCHOR_END: one_bar_predict
+        // ANCHOR: one_bar_to_nodes
         // Step 2: the nodes forget, and the particles look around where they are now.
         m_I.fill(0.0);
         p_I.fill(0.0);
@@ -74,6 +77,8 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
                 p_I[I] += v_p[p] * (m_p * N_Ip);
             }
         }
+        // ANCHOR_END: one_bar_to_nodes
+        // ANCHOR: one_bar_strain
         // Step 4: the essential boundary condition; then v_I = p_I / m_I.
         p_I[0] = 0.0;
         for p in 0..particles {
@@ -86,6 +91,8 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
             rho_p[p] /= 1.0 + d_eps;
             sigma_p[p] += bar.youngs_modulus * d_eps;
         }
+        // ANCHOR_END: one_bar_strain
+        // ANCHOR: one_bar_push
         // Step 7: (14), the internal forces; there are no others.
         for p in 0..particles {
             for &(I, _, grad_N_Ip) in &shape[p] {
@@ -97,12 +104,15 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
         for I in 0..nodes {
             p_I[I] += f_I[I] * (0.5 * dt);
         }
+        // ANCHOR_END: one_bar_push
+        // ANCHOR: one_bar_to_particles
         // Step 9, the corrector: (29), with the new forces.
         for p in 0..particles {
             for &(I, N_Ip, _) in &shape[p] {
                 v_p[p] += f_I[I] * (N_Ip / m_I[I]) * (0.5 * dt);
             }
         }
+        // ANCHOR_END: one_bar_to_particles
         if v_p.iter().any(|v| !v.is_finite()) {
             return None; // a particle exactly on a node beside one without mass
         }
@@ -111,6 +121,7 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
     Some(history)
 }
 
+// ANCHOR: one_bar_hat
 /// Gives (I, N_I, ∇N_I) of the linear basis for the two nodes beside x.
 fn linear(x: f64, h: f64, nodes: usize) -> Option<Vec<(usize, f64, f64)>> {
     let cell = (x / h) as usize;
@@ -118,6 +129,7 @@ fn linear(x: f64, h: f64, nodes: usize) -> Option<Vec<(usize, f64, f64)>> {
     let row = vec![(cell, 1.0 - xi, -1.0 / h), (cell + 1, xi, 1.0 / h)];
     (x >= 0.0 && cell + 1 < nodes).then_some(row)
 }
+// ANCHOR_END: one_bar_hat
 // ANCHOR_END: one_bar
 
 // ANCHOR: one_bar_lme

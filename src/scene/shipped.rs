@@ -25,6 +25,7 @@ macro_rules! shipped {
 pub const SHIPPED: &[Shipped] = shipped![
     "dyka",
     "dyka-otm",
+    "one-particle",
     "free-flight",
     "vibration",
     "gravity",

@@ -63,6 +63,42 @@ pub fn convergence(title: &str, lists: &[(&str, CurvePoints)]) -> String {
     curves(lists, &Axes::new(title, "cells [–]", "relative error [–]", true))
 }
 
+/// One basis in [`dispersion`]: its name, its curves with the lumped and the consistent mass
+/// matrix, and what was measured with either.
+pub struct Dispersion {
+    pub name: String,
+    pub lumped: CurvePoints,
+    pub consistent: CurvePoints,
+    pub measured: CurvePoints,
+}
+
+/// Draws the speed of waves against their θ/π: solid lumped, dashed consistent, measured points;
+/// large words, for a narrow page.
+pub fn dispersion(bases: &[Dispersion]) -> String {
+    let mut plots: Vec<Plot> = Vec::new();
+    for (n, basis) in bases.iter().enumerate() {
+        let line = |points: &CurvePoints| {
+            let line = LinePlot::new().with_data(points.clone()).with_color(COLOURS[n]);
+            // The first curve lies under one that is the same.
+            line.with_stroke_width(if n == 0 { 6.0 } else { 2.0 })
+        };
+        plots.push(Plot::from(line(&basis.lumped).with_legend(&basis.name)));
+        plots.push(Plot::from(line(&basis.consistent).with_dashed()));
+        let points = ScatterPlot::new().with_data::<f64, f64, CurvePoints>(basis.measured.clone());
+        plots.push(points.with_size(3.0).with_color(COLOURS[n]).into());
+    }
+    let layout = Layout::auto_from_plots(&plots)
+        .with_x_axis_min(0.0)
+        .with_x_axis_max(1.0)
+        .with_x_label("θ/π (1: a wave of two cells)")
+        .with_y_label("speed of the wave / c")
+        .with_label_size(17)
+        .with_tick_size(15)
+        .with_body_size(16)
+        .with_legend_position(LegendPosition::OutsideBottomColumns);
+    own_ids(&render_to_svg(plots, layout))
+}
+
 /// Each map of [`local_max_ent`] has as many points to a side, and this half of a width in
 /// cells.
 const PIXELS: usize = 25;
