@@ -149,7 +149,7 @@ enum Group {
 
 const GROUPS: [(Group, &str); 9] = [
     (Group::Extreme, "a number becomes an extreme one"),
-    (Group::Numbers, "three numbers change, most a little"),
+    (Group::Numbers, "three numbers change (most a little)"),
     (Group::Word, "a value becomes a word"),
     (Group::Type, "a value becomes one of another type"),
     (Group::Missing, "a line is missing"),
