@@ -111,7 +111,7 @@ fn locking_of_a_cantilever() {
     let mut table = format!("basis,{}\n", nus.join(","));
     for (name, sets) in [
         ("linear", &["basis.kind=linear"][..]),
-        ("linear, 1 per cell", &["basis.kind=linear", "grid.particles_per_cell=[1,1]"]),
+        ("linear (1 per cell)", &["basis.kind=linear", "grid.particles_per_cell=[1,1]"]),
         ("uGIMP", &["basis.kind=ugimp"]),
         ("B-spline", &["basis.kind=bspline"]),
         ("cubic B-spline", &["basis.kind=bspline", "basis.degree=cubic"]),
@@ -121,7 +121,7 @@ fn locking_of_a_cantilever() {
         ("OTM 0.8", &["method=otm", "basis.kind=lme", "basis.gamma=0.8"]),
         ("OTM 4", &["method=otm", "basis.kind=lme", "basis.gamma=4"]),
         (
-            "OTM 4, 1 per cell",
+            "OTM 4 (1 per cell)",
             &["method=otm", "basis.kind=lme", "basis.gamma=4", "grid.particles_per_cell=[1,1]"],
         ),
     ] {
