@@ -428,7 +428,7 @@ fn commands_of_the_book_cut_no_exponent() {
 /// may have one, and `cargo book` does not load what would fill them in.
 #[test]
 fn chapters_know_their_directives() {
-    let known = ["code", "side", "beside", "end", "pin", "table", "value", "figure"];
+    let known = ["code", "side", "beside", "end", "pin", "file", "table", "value", "figure"];
     for (chapter, text) in chapters() {
         for rest in text.split("{{#").skip(1) {
             let word = rest.split([' ', '}']).next().unwrap();

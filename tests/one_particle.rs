@@ -114,7 +114,7 @@ const ROWS: [(usize, &str, &str, usize, &str); 19] = [
     (3, "mass of node 2", "m_I", 2, "kg"),
     (3, "momentum of node 0", "p_I", 0, "kg m/s"),
     (3, "momentum of node 1", "p_I", 1, "kg m/s"),
-    (4, "velocity of node 0 (held)", "v_I", 0, "m/s"),
+    (4, "velocity of the held node 0", "v_I", 0, "m/s"),
     (4, "velocity of node 1", "v_I", 1, "m/s"),
     (5, "increment of the strain", "d_eps_p", 0, "–"),
     (6, "density", "rho_p", 0, "kg/m³"),
@@ -131,11 +131,12 @@ const ROWS: [(usize, &str, &str, usize, &str); 19] = [
 #[test]
 fn one_particle_number_by_number() {
     let made = Made::of_the_scene();
-    let mut table = "step,what,k = 0,k = 1,k = 2,unit\n".to_string();
+    let mut table = "step,what,k = 0,k = 1,k = 2\n".to_string();
     let mut numbers = "quantity,value,unit\n".to_string();
     for (step, says, symbol, index, unit) in ROWS {
         let [a, b, c] = [0, 1, 2].map(|k| made.says(k, step, symbol, index));
-        writeln!(table, "{step},{says},{a},{b},{c},{unit}").unwrap();
+        let in_unit = if unit == "–" { String::new() } else { format!(" ({unit})") };
+        writeln!(table, "{step},{says}{in_unit},{a},{b},{c}").unwrap();
         for (k, value) in [a, b, c].iter().enumerate() {
             writeln!(numbers, "{symbol}[{index}]@{k}.{step},{value},{unit}").unwrap();
         }

@@ -5,6 +5,7 @@
 //! | `{{#code FILE:ANCHOR}}` | anchored lines of the source |
 //! | `{{#side}}` … `{{#beside}}` … `{{#end}}` | prose beside code |
 //! | `{{#pin SNAPSHOT}}` | an approved text |
+//! | `{{#file FILE}}` | the text of a file of the repository |
 //! | `{{#table FILE}}` | a CSV file, or a snapshot that holds CSV, as a table |
 //! | `{{#value FILE KEY [percent]}}` | one approved number, in a sentence |
 //! | `{{#figure SNAPSHOT | CAPTION}}` | an approved picture |
@@ -68,6 +69,7 @@ impl Directives {
             "beside" => Ok("</div><div class=\"beside\">\n".into()),
             "end" => Ok("</div></div>\n".into()),
             "pin" => Ok(format!("```text\n{}\n```", snapshot(argument)?.trim_end())),
+            "file" => Ok(read(argument)?.trim_end().to_string()),
             "table" => table(argument),
             "value" => value(argument),
             "figure" => {

@@ -95,7 +95,11 @@ pub fn dispersion(bases: &[Dispersion]) -> String {
         .with_label_size(17)
         .with_tick_size(15)
         .with_body_size(16)
-        .with_legend_position(LegendPosition::OutsideBottomColumns);
+        .with_width(640.0)
+        .with_height(640.0)
+        .with_y_axis_max(2.25)
+        .with_legend_width(210.0)
+        .with_legend_position(LegendPosition::InsideTopLeft);
     own_ids(&render_to_svg(plots, layout))
 }
 
