@@ -41,6 +41,7 @@ mod regression;
 #[cfg(unix)] // pipes, links, signals, names that are bytes
 mod results;
 mod riemann;
+mod ripple;
 #[path = "bench/rows.rs"]
 mod rows;
 mod runs;
