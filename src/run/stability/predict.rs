@@ -16,7 +16,7 @@ use crate::scene::{Motion, Scene};
 use crate::setup;
 use nalgebra::{SMatrix, SVector};
 
-/// A particle that has just touched a new node switches it on. For uGIMP and
+/// A particle that has just touched a new node switches it on. For GIMP and
 /// B-splines that node then counts at once, however small its mass, so the limit
 /// is also taken with all particles moved by this share of a cell.
 const TOUCH: f64 = 1e-7;
