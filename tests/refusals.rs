@@ -237,7 +237,7 @@ fn bad_basis_keys() {
 #[test]
 fn bad_loads_and_motions() {
     let gravity = "\n[body_force]\nacceleration = 9.81\n";
-    let cases: [(&str, String, &[&str]); 15] = [
+    let cases: [(&str, String, &[&str]); 16] = [
         ("pull-fixed", "[traction]\nleft = 1e6\n".into(), &["traction.left", "0 where the side"]),
         ("pull-top", "[traction]\ntop = 1e6\n".into(), &["traction.top", "1 axis"]),
         ("pull-late", "[traction]\nright = 1\nramp = -1\n".into(), &["traction.ramp", "from 0 up"]),

@@ -156,7 +156,8 @@ impl<const D: usize> Particles<D> {
 
     // ANCHOR: stretch
     /// Stretches the particles' domains by 1 + G_dd along axis d, or 1 + Δε_dd where G_p is not
-    /// kept: in 1D, and while no axis turns into another, the product is F_dd.
+    /// kept: in 1D, and while no axis turns into another, the product is F_dd. A basis without
+    /// domains has nothing to stretch.
     pub fn lengthen(&mut self) {
         let step = if self.G.is_empty() { &self.d_eps } else { &self.G };
         for (stretch, step) in self.stretch.iter_mut().zip(step) {

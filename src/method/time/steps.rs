@@ -147,8 +147,7 @@ pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &Elastic)
 }
 // ANCHOR_END: update_stress
 
-/// Step 6 as a whole: density and stress by (17) and (3) as printed, or at finite strain; the
-/// domains of GIMP, too, where they stretch.
+/// Step 6 as a whole: density and stress by (17) and (3) as printed, or at finite strain.
 ///
 /// Errors: [`Breakdown::Inverted`], [`Breakdown::NotFinite`].
 pub fn update_material<const D: usize>(
@@ -156,12 +155,10 @@ pub fn update_material<const D: usize>(
     model: &Model<D>,
 ) -> Result<(), Breakdown> {
     if model.keeps_gradient() {
-        deform(particle, &model.law)?;
-    } else {
-        update_density(particle)?; // (17)
-        update_stress(particle, &model.law); // (3)
+        return deform(particle, &model.law);
     }
-    particle.lengthen();
+    update_density(particle)?; // (17)
+    update_stress(particle, &model.law); // (3)
     Ok(())
 }
 
@@ -236,6 +233,7 @@ pub fn strain_material<const D: usize>(
     dt: f64,
 ) -> Result<(), Breakdown> {
     increment_strain(particle, node, shape, dt);
+    particle.lengthen();
     update_material(particle, model)
 }
 

@@ -186,7 +186,7 @@ fn least<const D: usize>(
 // ANCHOR: touches
 /// Lists the offsets that differ by a touch, along every axis and towards every corner, by
 /// which a particle sees other nodes: of all particles alike, and of each by itself,
-/// at random. There are none where a node counts the less, the less mass it has: but for uGIMP
+/// at random. There are none where a node counts the less, the less mass it has: but for GIMP
 /// and B-splines, and with the leapfrogs and the lumped mass matrix.
 ///
 /// What grows at a touched node depends on the particles around it. Many particles make all
