@@ -13,11 +13,14 @@ use std::fmt::Write;
 
 const KINDS: [(&str, &str); 2] = [("uGIMP", "basis.kind=ugimp"), ("GIMP", "basis.kind=gimp")];
 
+/// A particle sees a node: I, p, N_Ip and ∇N_Ip.
+type Pair<const D: usize> = (usize, usize, f64, SVector<f64, D>);
+
 /// Makes the table of a state, and what it holds.
 fn table<const D: usize>(
     model: &Model<D>,
     state: &mut State<D>,
-) -> Result<Vec<(usize, usize, f64, SVector<f64, D>)>, Breakdown> {
+) -> Result<Vec<Pair<D>>, Breakdown> {
     let State { particle, shape, scratch, .. } = state;
     steps::tabulate(shape, scratch, particle, model)?;
     Ok(shape.pairs().collect())
