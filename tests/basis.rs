@@ -21,6 +21,9 @@ const BSPLINE: Basis = Basis::BSpline(Degree::Quadratic);
 const CUBIC: Basis = Basis::BSpline(Degree::Cubic);
 const UGIMP: Basis = Basis::Ugimp { half_length: [0.25, 0.5, 0.125] };
 
+/// Domains that have grown longer than a cell.
+const WIDE_GIMP: Basis = Basis::Ugimp { half_length: [0.75, 1.0, 0.6] };
+
 const fn lme(gamma: f64) -> Basis {
     Basis::Lme { gamma, cutoff: 1e-6, support: Support::Ball }
 }
@@ -38,11 +41,15 @@ fn grid<const D: usize>() -> Grid<D> {
     )
 }
 
-/// A point from three numbers in [0, 1]: of the whole grid, but with uGIMP of
-/// the part that is half a cell from its ends.
+/// A point from three numbers in [0, 1]: of the whole grid, but with GIMP of
+/// the part that is half a cell, or a whole one, from its ends.
 fn point<const D: usize>(basis: &Basis, s: [f64; 3]) -> SVector<f64, D> {
     let grid = grid::<D>();
-    let margin = if matches!(basis, Basis::Ugimp { .. }) { 0.5 } else { 0.0 };
+    let margin = match basis {
+        Basis::Ugimp { .. } if *basis == WIDE_GIMP => 1.0,
+        Basis::Ugimp { .. } => 0.5,
+        _ => 0.0,
+    };
     SVector::from_fn(|d, _| {
         let low = (margin - grid.before[d] as f64) * grid.h[d];
         let high = grid.upper[d] - margin * grid.h[d];
@@ -151,12 +158,12 @@ proptest! {
     #[test]
     fn basis_checklist(s in [0.0..=1.0_f64, 0.0..=1.0, 0.0..=1.0], g in 0..4_usize) {
         let gamma = [0.8, 1.8, 4.0, 20.0][g];
-        for basis in [Basis::Linear, UGIMP, BSPLINE, CUBIC, lme(gamma)] {
+        for basis in [Basis::Linear, UGIMP, WIDE_GIMP, BSPLINE, CUBIC, lme(gamma)] {
             check_mirror(&basis, s[0]);
             check::<1>(&basis, s);
             check::<2>(&basis, s);
         }
-        for basis in [Basis::Linear, UGIMP, BSPLINE, CUBIC] {
+        for basis in [Basis::Linear, UGIMP, WIDE_GIMP, BSPLINE, CUBIC] {
             check::<3>(&basis, s);
         }
         check_sums::<3>(&lme(gamma), s);

@@ -2,7 +2,7 @@
 
 use crate::support::*;
 use lme_mpm::method::basis::scattered::values_at as lme_at;
-use lme_mpm::method::basis::{Basis, Scratch, Support, fill_from_grid};
+use lme_mpm::method::basis::{Basis, Extents, Scratch, Support, fill_from_grid};
 use lme_mpm::method::continuum::shape::Shape;
 use lme_mpm::method::continuum::state::Multiplier;
 use lme_mpm::method::grid::Grid;
@@ -115,7 +115,9 @@ fn lme_axis_is_the_general_solution() {
             let mut known = [Multiplier::default()];
             for n in 0..steps {
                 let x = Vector1::new((start + n as f64 * step).min(12.0));
-                fill_from_grid(&mut shape, &mut scratch, &mut known, &basis, &grid, &[x]).unwrap();
+                let place = [x];
+                let at = Extents::unstretched(&place);
+                fill_from_grid(&mut shape, &mut scratch, &mut known, &basis, &grid, at).unwrap();
                 let seen: Vec<_> = shape.of(0).map(|(I, ..)| nodes[I]).collect();
                 let (general, lambda) = lme_at(&seen, 1.0, gamma, 0.0, &x).unwrap();
                 for ((_, N, slope), (_, expected, expected_slope)) in shape.of(0).zip(&general) {

@@ -18,6 +18,7 @@ mod extremes_of_scenes;
 mod finite;
 mod fuzz;
 mod gate;
+mod gimp;
 mod guards;
 mod house;
 mod hull;

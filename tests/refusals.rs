@@ -237,7 +237,7 @@ fn bad_basis_keys() {
 #[test]
 fn bad_loads_and_motions() {
     let gravity = "\n[body_force]\nacceleration = 9.81\n";
-    let cases: [(&str, String, &[&str]); 15] = [
+    let cases: [(&str, String, &[&str]); 16] = [
         ("pull-fixed", "[traction]\nleft = 1e6\n".into(), &["traction.left", "0 where the side"]),
         ("pull-top", "[traction]\ntop = 1e6\n".into(), &["traction.top", "1 axis"]),
         ("pull-late", "[traction]\nright = 1\nramp = -1\n".into(), &["traction.ramp", "from 0 up"]),
@@ -277,6 +277,7 @@ fn bad_loads_and_motions() {
             &["time.integrator", "central differences", "\"newmark\""],
         ),
         ("otm-ugimp", "otm-ugimp".into(), &["basis.kind", "moving nodes", "\"lme\""]),
+        ("otm-gimp", "otm-gimp".into(), &["basis.kind", "moving nodes", "\"lme\""]),
     ];
     let good = fs::read_to_string(DYKA).unwrap();
     for (name, more, words) in cases {
@@ -287,6 +288,7 @@ fn bad_loads_and_motions() {
                 good.replace("\"mpm\"", "\"otm\"").replace("\"newmark\"", "\"corrected-euler\"")
             }
             "otm-ugimp" => good.replace("\"mpm\"", "\"otm\"").replace("\"linear\"", "\"ugimp\""),
+            "otm-gimp" => good.replace("\"mpm\"", "\"otm\"").replace("\"linear\"", "\"gimp\""),
             // A scene with one motion keeps it; a mode takes its place.
             _ if more.contains("mode = ") && !name.starts_with("two") => {
                 let start = good.find("[[initial_velocity]]").unwrap();

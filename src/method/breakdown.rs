@@ -43,6 +43,12 @@ pub enum Breakdown {
     )]
     ReachesBeyond { particle: usize, position: Vec<f64> },
     #[error(
+        "the domain of particle {particle} would be {cells:e} cells long along axis {axis}, and it \
+         must be above 0 and at most 2; give the cells more particles, or set basis.kind = \"ugimp\", \
+         whose domains keep their size"
+    )]
+    Domain { particle: usize, axis: usize, cells: f64 },
+    #[error(
         "the volume of particle {particle} is used up: in one step it would become {:e} times \
          what it was, and that must stay above 0",
         1.0 + strain

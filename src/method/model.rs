@@ -47,7 +47,9 @@ impl<const D: usize> Model<D> {
     /// Counts the bytes of state that one particle carries in this model.
     pub fn bytes_per_particle(&self) -> usize {
         let (vector, matrix) = (size_of::<SVector<f64, D>>(), size_of::<SMatrix<f64, D, D>>());
-        let of_basis = if self.basis.has_multiplier() { size_of::<Multiplier<D>>() } else { 0 };
+        let of_multiplier =
+            if self.basis.has_multiplier() { size_of::<Multiplier<D>>() } else { 0 };
+        let of_basis = of_multiplier + if self.basis.has_stretch() { vector } else { 0 };
         let of_method = match self.method {
             Method::Mpm(integrator) if integrator.carries_acceleration() => vector, // a_p
             Method::Mpm(_) => 0,
@@ -110,6 +112,9 @@ impl<const D: usize> State<D> {
             vec![0.0; if hyperelastic { 0 } else { particles * Particles::<D>::PLANES }];
         if model.basis.has_multiplier() {
             particle.lambda = vec![Multiplier::default(); particles];
+        }
+        if model.basis.has_stretch() {
+            particle.stretch = vec![SVector::repeat(1.0); particles];
         }
         let mass = match model.mass {
             Mass::Lumped => MassMatrix::Lumped,

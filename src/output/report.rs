@@ -90,6 +90,7 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Fault {
     let courant = scene.courant_number();
     let hint = match stopped.broken.breakdown {
         Breakdown::ReachesBeyond { .. }
+        | Breakdown::Domain { .. }
         | Breakdown::NoBasis { .. }
         | Breakdown::SingularMass { .. }
         | Breakdown::NoMass { .. }

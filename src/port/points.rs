@@ -2,7 +2,7 @@
 
 use super::rows::{self, Rows};
 use crate::method::basis::scattered::{Places, fill_from_nodes};
-use crate::method::basis::{Basis, Scratch, fill_from_grid};
+use crate::method::basis::{Basis, Extents, Scratch, fill_from_grid};
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::Multiplier;
@@ -158,7 +158,8 @@ fn shape_in<const D: usize>(
     let (file_node, done) = match regular_grid(spacing, nodes, &place) {
         Ok(Regular { grid, lowest, file_node }) => {
             let x: Vec<_> = x.iter().map(|x| x - lowest).collect();
-            let done = fill_from_grid(&mut shape, &mut scratch, &mut lambda, basis, &grid, &x);
+            let x = Extents::unstretched(&x);
+            let done = fill_from_grid(&mut shape, &mut scratch, &mut lambda, basis, &grid, x);
             (file_node, done)
         }
         Err(fault) if needs_grid || basis.width().is_none() => return Err(fault),

@@ -117,8 +117,8 @@ pub const KEYS: &[Key] = &[
     must("basis", Table, "The shape functions"),
     must(
         "basis.kind",
-        Choice(&["linear", "ugimp", "lme", "bspline"]),
-        "Linear, uGIMP, local max-ent, B-splines",
+        Choice(&["linear", "ugimp", "gimp", "lme", "bspline"]),
+        "Linear, uGIMP, GIMP whose domains stretch, local max-ent, B-splines",
     )
     .besides("with the method \"otm\" \"lme\", in 1D also \"linear\""),
     may(

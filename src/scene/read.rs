@@ -223,10 +223,10 @@ fn grid(values: &Values, boundary: &[[Side; 2]]) -> Result<GridSpec, Box<SceneEr
     // A body leaves the grid only through a side that lets it move. A side that holds any
     // component is the last of the grid: there the nodes on it are the velocity of the side,
     // while functions that are wider than a cell would blend in those beside it. The
-    // particles of uGIMP reach beyond their centres.
-    let ugimp = values.word("basis.kind")? == "ugimp";
+    // particles of GIMP reach beyond their centres.
+    let gimp = ["ugimp", "gimp"].contains(&values.word("basis.kind")?);
     let mut beyond: Vec<[usize; 2]> = (0..values.dimension())
-        .map(|d| [0, 1].map(|upper| usize::from(ugimp || !boundary[d][upper].holds())))
+        .map(|d| [0, 1].map(|upper| usize::from(gimp || !boundary[d][upper].holds())))
         .collect();
     for side in values.sides("grid.beyond")? {
         beyond[side.axis][side.upper] = values.whole(&side.path)?;

@@ -74,6 +74,7 @@ pub fn basis(values: &Values, grid: &GridSpec) -> Result<Basis, Box<SceneError>>
     match values.word("basis.kind")? {
         "linear" => Ok(Basis::Linear),
         "ugimp" => Ok(Basis::Ugimp { half_length: [half(0), half(1), half(2)] }),
+        "gimp" => Ok(Basis::Gimp { half_length: [half(0), half(1), half(2)] }),
         "bspline" => values
             .choose("basis.degree", &[("quadratic", Degree::Quadratic), ("cubic", Degree::Cubic)])
             .map(Basis::BSpline),

@@ -99,6 +99,9 @@ fn displace<const D: usize>(state: &mut State<D>, moved: &Moved<D>) {
         particle.advance(p, fields.displacement);
         particle.sigma[p] = fields.stress;
         particle.rho[p] /= 1.0 + volume_change(&(F - SMatrix::identity()));
+        if let Some(stretch) = particle.stretch.get_mut(p) {
+            *stretch = F.diagonal();
+        }
         if let Some(F_p) = particle.F.get_mut(p) {
             *F_p = F;
         }

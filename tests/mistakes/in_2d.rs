@@ -2,7 +2,7 @@
 
 use super::{Mistake, Seed};
 use crate::support::kit::{STRIP, TWO_DISCS};
-use lme_mpm::method::basis::{Basis, fill_from_grid};
+use lme_mpm::method::basis::{Basis, Extents, fill_from_grid};
 use lme_mpm::method::continuum::loads::BodyForce;
 use lme_mpm::method::continuum::sums;
 use lme_mpm::method::model::State;
@@ -103,7 +103,7 @@ pub static MISTAKES: [Mistake<2>; 21] = [
                     &mut wrong.particle.lambda,
                     &other,
                     &at.model.grid,
-                    &wrong.particle.x,
+                    Extents::unstretched(&wrong.particle.x),
                 )
                 .unwrap();
                 let right = state.shape.clone();

@@ -12,7 +12,7 @@ pub use reference::*;
 pub use scenes::*;
 
 use lme_mpm::method::basis::scattered::{Places, fill_from_nodes};
-use lme_mpm::method::basis::{Basis, Scratch, fill_from_grid};
+use lme_mpm::method::basis::{Basis, Extents, Scratch, fill_from_grid};
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::method::continuum::shape::Shape;
 use lme_mpm::method::continuum::state::Multiplier;
@@ -183,7 +183,7 @@ pub fn on_grid<const D: usize>(
     x: &[SVector<f64, D>],
 ) -> Result<Tabulated<D>, Breakdown> {
     let (table, done) = tabulated(x.len(), |shape, scratch, lambda| {
-        fill_from_grid(shape, scratch, lambda, basis, grid, x)
+        fill_from_grid(shape, scratch, lambda, basis, grid, Extents::unstretched(x))
     });
     done.map(|()| table)
 }

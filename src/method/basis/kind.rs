@@ -12,6 +12,11 @@ pub enum Basis {
         /// l = l_p/h along each axis: half the particle's length in cells.
         half_length: [f64; 3],
     },
+    /// Linear functions averaged over particles that stretch.
+    Gimp {
+        /// l = l_p/h along each axis before any stretch.
+        half_length: [f64; 3],
+    },
     /// Local maximum entropy, (30)-(37).
     Lme {
         /// γ = βh².
@@ -49,7 +54,7 @@ impl Basis {
     pub fn width(&self) -> Option<Width> {
         match self {
             Basis::Lme { gamma, cutoff, .. } => Some(Width::of(*gamma, *cutoff)),
-            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline(_) => None,
+            Basis::Linear | Basis::Ugimp { .. } | Basis::Gimp { .. } | Basis::BSpline(_) => None,
         }
     }
 
@@ -57,15 +62,20 @@ impl Basis {
     pub fn has_multiplier(&self) -> bool {
         match self {
             Basis::Lme { .. } => true,
-            Basis::Linear | Basis::Ugimp { .. } | Basis::BSpline(_) => false,
+            Basis::Linear | Basis::Ugimp { .. } | Basis::Gimp { .. } | Basis::BSpline(_) => false,
         }
+    }
+
+    /// Says whether each particle keeps its stretch along each axis.
+    pub fn has_stretch(&self) -> bool {
+        matches!(self, Basis::Gimp { .. })
     }
 
     /// Says whether a node that a particle has just touched counts at once, however small
     /// its mass, so that the limit of Δt is also taken with all particles moved by a touch.
     pub fn switches_nodes_on(&self) -> bool {
         match self {
-            Basis::Ugimp { .. } | Basis::BSpline(_) => true,
+            Basis::Ugimp { .. } | Basis::Gimp { .. } | Basis::BSpline(_) => true,
             Basis::Linear | Basis::Lme { .. } => false,
         }
     }
@@ -75,7 +85,7 @@ impl Basis {
         match self {
             Basis::Linear => 2.0,
             Basis::Ugimp { .. } | Basis::BSpline(Degree::Quadratic) => 3.0,
-            Basis::BSpline(Degree::Cubic) => 4.0,
+            Basis::BSpline(Degree::Cubic) | Basis::Gimp { .. } => 4.0,
             Basis::Lme { gamma, cutoff, .. } => (2.0 * radius(*gamma, *cutoff) + 2.0).min(nodes),
         }
     }

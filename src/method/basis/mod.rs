@@ -22,24 +22,41 @@ use nalgebra::SVector;
 use std::array::from_fn;
 use support::{Width, row_in_ball, row_in_box};
 
+/// Extents say where particles stand and, where their basis asks for it, how far they have
+/// stretched.
+#[derive(Clone, Copy)]
+pub struct Extents<'a, const D: usize> {
+    /// x_p (m).
+    pub x: &'a [SVector<f64, D>],
+    /// The stretch along each axis (–); empty where no particle has one.
+    pub stretch: &'a [SVector<f64, D>],
+}
+
+impl<'a, const D: usize> Extents<'a, D> {
+    /// Takes particles that are as long as they were, at `x` (m).
+    pub fn unstretched(x: &'a [SVector<f64, D>]) -> Self {
+        Extents { x, stretch: &[] }
+    }
+}
+
 // ANCHOR: tabulate
-/// Fills the table with N_Ip (–) and ∇N_Ip (1/m) at the positions `x` (m). With local
-/// max-ent `lambda` starts the search for each particle's λ h, and holds what was found.
+/// Fills the table with N_Ip (–) and ∇N_Ip (1/m) of `particles`. With local max-ent `lambda`
+/// starts the search for each particle's λ h, and holds what was found.
 ///
 /// Errors: the first particle that cannot be served, [`Breakdown::LeftGrid`],
-/// [`Breakdown::NotFinite`], [`Breakdown::ReachesBeyond`] or [`Breakdown::NoBasis`].
-/// Tests: `tests/basis.rs`.
+/// [`Breakdown::NotFinite`], [`Breakdown::ReachesBeyond`], [`Breakdown::Domain`] or
+/// [`Breakdown::NoBasis`]. Tests: `tests/basis.rs`, `tests/gimp.rs`.
 pub fn fill_from_grid<const D: usize>(
     shape: &mut Shape<D>,
     scratch: &mut Scratch<D>,
     lambda: &mut [Multiplier<D>],
     basis: &Basis,
     grid: &Grid<D>,
-    x: &[SVector<f64, D>],
+    particles: Extents<D>,
 ) -> Result<(), Breakdown> {
     shape.clear(grid.stride());
     let making = Making::of::<D>(basis);
-    for (p, x_p) in x.iter().enumerate() {
+    for (p, x_p) in particles.x.iter().enumerate() {
         let Some(at) = grid.locate(x_p) else {
             return Err(outside(p, x_p));
         };
@@ -53,8 +70,9 @@ pub fn fill_from_grid<const D: usize>(
                 let axes = bspline::axes(degree, &at, grid);
                 shape.push_product(from_fn(|d| axes[d].factors()));
             }
-            Making::Ugimp(half_length) => {
-                let axes = ugimp::axes(&at, grid, half_length).ok_or_else(|| {
+            Making::Gimp(half_length) => {
+                let l = ugimp::stretched(p, half_length, particles.stretch)?;
+                let axes = ugimp::axes(&at, grid, l).ok_or_else(|| {
                     let position = x_p.iter().copied().collect();
                     Breakdown::ReachesBeyond { particle: p, position }
                 })?;
@@ -77,7 +95,7 @@ pub fn fill_from_grid<const D: usize>(
 #[derive(Clone, Copy)]
 enum Making {
     Linear,
-    Ugimp([f64; 3]),
+    Gimp([f64; 3]),
     BSpline(Degree),
     Box(Width),
     Ball(Width),
@@ -88,7 +106,7 @@ impl Making {
     fn of<const D: usize>(basis: &Basis) -> Self {
         match *basis {
             Basis::Linear => Making::Linear,
-            Basis::Ugimp { half_length } => Making::Ugimp(half_length),
+            Basis::Ugimp { half_length } | Basis::Gimp { half_length } => Making::Gimp(half_length),
             Basis::BSpline(degree) => Making::BSpline(degree),
             Basis::Lme { gamma, cutoff, support } => match support {
                 Support::Ball if D > 1 => Making::Ball(Width::of(gamma, cutoff)),

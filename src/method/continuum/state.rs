@@ -35,6 +35,9 @@ pub struct Particles<const D: usize> {
     pub G: Vec<SMatrix<f64, D, D>>,
     /// F_p, deformation gradient (–); of hyperelastic laws only.
     pub F: Vec<SMatrix<f64, D, D>>,
+    /// How long each particle is along each axis, relative to its start (–); of GIMP with domains
+    /// that stretch only.
+    pub stretch: Vec<SVector<f64, D>>,
     /// Sums of ½ (G_ji − G_ij), how far each particle has turned in each plane (rad); of the
     /// rate law in 2D and 3D only.
     pub turned: Vec<f64>,
@@ -123,6 +126,7 @@ impl<const D: usize> Particles<D> {
             a: Vec::new(),
             G: Vec::new(),
             F: Vec::new(),
+            stretch: Vec::new(),
             turned: Vec::new(),
         }
     }
@@ -149,6 +153,20 @@ impl<const D: usize> Particles<D> {
             }
         }
     }
+
+    // ANCHOR: stretch
+    /// Stretches the particles' domains by 1 + G_dd along axis d, or 1 + Δε_dd where G_p is not
+    /// kept: in 1D, and while no axis turns into another, the product is F_dd. A basis without
+    /// domains has nothing to stretch.
+    pub fn lengthen(&mut self) {
+        let step = if self.G.is_empty() { &self.d_eps } else { &self.G };
+        for (stretch, step) in self.stretch.iter_mut().zip(step) {
+            for d in 0..D {
+                stretch[d] *= 1.0 + step[(d, d)];
+            }
+        }
+    }
+    // ANCHOR_END: stretch
 
     /// Gives N_p, the number of particles.
     pub fn len(&self) -> usize {

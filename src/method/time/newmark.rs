@@ -27,6 +27,7 @@ pub fn step<const D: usize>(
         1 => {
             if model.kinematics == Kinematics::Consistent {
                 gradient_of_predictor(particle, node, shape, dt);
+                particle.lengthen(); // before the table at the new places
             }
             predict(particle, node, shape, dt); // (27) (28)
         }
@@ -38,6 +39,7 @@ pub fn step<const D: usize>(
         4 => impose_essential(node, mass, &model.fixed),
         5 if model.kinematics == Kinematics::AsPrinted => {
             increment_strain(particle, node, shape, dt); // (16)
+            particle.lengthen();
         }
         5 => {}                                 // the strain is that of step 1
         6 => update_material(particle, model)?, // (17) (3)

@@ -2,7 +2,7 @@
 //! first, inputs after, so that a signature reads like its equation.
 
 use super::deformation::deform;
-use crate::method::basis::{self, Scratch};
+use crate::method::basis::{self, Extents, Scratch};
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::law::{self, Elastic};
 use crate::method::continuum::mass::MassMatrix;
@@ -54,15 +54,16 @@ pub fn discard<const D: usize>(node: &mut Nodes<D>) {
 /// Step 2 also tabulates N_Ip and ∇N_Ip at the particles' new positions.
 ///
 /// Errors: [`Breakdown::LeftGrid`]; [`Breakdown::NotFinite`] for a position that
-/// is not a number; [`Breakdown::NoBasis`] where local max-ent has no solution.
+/// is not a number; [`Breakdown::NoBasis`] where local max-ent has no solution;
+/// [`Breakdown::Domain`] where that of GIMP has outgrown its grid.
 pub fn tabulate<const D: usize>(
     shape: &mut Shape<D>,
     scratch: &mut Scratch<D>,
     particle: &mut Particles<D>,
     model: &Model<D>,
 ) -> Result<(), Breakdown> {
-    let Particles { x, lambda, .. } = particle;
-    basis::fill_from_grid(shape, scratch, lambda, &model.basis, &model.grid, x)
+    let Particles { x, lambda, stretch, .. } = particle;
+    basis::fill_from_grid(shape, scratch, lambda, &model.basis, &model.grid, Extents { x, stretch })
 }
 // ANCHOR_END: tabulate_step
 
@@ -232,6 +233,7 @@ pub fn strain_material<const D: usize>(
     dt: f64,
 ) -> Result<(), Breakdown> {
     increment_strain(particle, node, shape, dt);
+    particle.lengthen();
     update_material(particle, model)
 }
 

@@ -17,7 +17,7 @@ use crate::scene::{Motion, Scene};
 use crate::setup;
 use nalgebra::{SMatrix, SVector};
 
-/// A particle that has just touched a new node switches it on. For uGIMP and
+/// A particle that has just touched a new node switches it on. For GIMP and
 /// B-splines that node then counts at once, however small its mass, so the limit
 /// is also taken with all particles moved by this share of a cell.
 const TOUCH: f64 = 1e-7;
@@ -210,7 +210,7 @@ fn least<const D: usize>(
 // ANCHOR: touches
 /// Lists the offsets that differ by a touch, along every axis and towards every corner, by
 /// which a particle sees other nodes: of all particles alike, and of each by itself,
-/// at random. There are none where a node counts the less, the less mass it has: but for uGIMP
+/// at random. There are none where a node counts the less, the less mass it has: but for GIMP
 /// and B-splines, and with the leapfrogs and the lumped mass matrix.
 ///
 /// What grows at a touched node depends on the particles around it. Many particles make all

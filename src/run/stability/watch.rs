@@ -223,6 +223,7 @@ impl<'a, const D: usize> Watch<'a, D> {
         let (own, model) = (self.own.get_or_insert_with(|| state.clone()), self.model);
         own.particle.x.copy_from_slice(&state.particle.x);
         own.particle.rho.copy_from_slice(&state.particle.rho);
+        own.particle.stretch.copy_from_slice(&state.particle.stretch);
         match model.method {
             Method::Otm(_) | Method::Mpm(Integrator::Newmark(_)) => {
                 own.shape.clone_from(&state.shape)
