@@ -18,17 +18,14 @@ function digest(bytes) {
 }
 const scenes = readdirSync(path.join(root, "data/scenes")).filter((file) => file.endsWith(".toml")).sort();
 
-// A native program, built with these arguments of cargo and flags of rustc.
+// The digests of a native program, built with these arguments of cargo and flags of rustc.
 function native(folder, args, flags) {
   const env = { ...process.env, ...(flags ? { RUSTFLAGS: flags } : {}) };
   const target = path.join(root, "target", folder);
-  run("cargo", ["build", "--quiet", "--locked", "--bin", "lme-mpm", "--target-dir", target, ...args], { env });
-  const program = path.join(target, args.includes("--release") ? "release" : "debug", "lme-mpm");
-  return (scene) => {
-    const out = path.join(root, "target/bits", folder.replace("/", "-"), scene);
-    run(program, ["run", `data/scenes/${scene}`, "--quiet", "--out", out], { stdio: ["ignore", "pipe", "pipe"] });
-    return digest(readFileSync(path.join(out, "history.csv")));
-  };
+  run("cargo", ["build", "--quiet", "--locked", "--package", "lme-mpm-lab", "--bin", "bits", "--target-dir", target, ...args], { env });
+  const lines = run(path.join(target, args.length ? "release" : "debug", "bits"), []).trim().split("\n");
+  const digests = new Map(lines.map((line) => line.split(",")));
+  return (scene) => digests.get(scene.replace(".toml", ""));
 }
 
 // The page's solver in this program's own engine.
@@ -58,8 +55,8 @@ const rustc = run("rustc", ["--version"]).trim().replace(/ \(.*/, "");
 const processor = cpus()[0].model.replace(/,/g, " ").trim();
 const machine = `${process.arch} ${process.platform}`;
 const platforms = [
-  ["debug", `${rustc}; ${machine}`, native(".", [])],
-  ["release", `${rustc}; ${machine}`, native(".", ["--release"])],
+  ["debug", `${rustc}; ${machine}`, native("bits", [])],
+  ["release", `${rustc}; ${machine}`, native("bits", ["--release"])],
   ["release with target-cpu=native", `${rustc}; ${machine}; ${processor}`, native("native", ["--release"], "-C target-cpu=native")],
   ["WebAssembly", `book/lab/lab.wasm in V8 ${process.versions.v8.replace(/-.*/, "")} of Node ${process.version}`, page()],
 ];
