@@ -2,7 +2,7 @@
 
 use crate::answer::Answer;
 use lme_mpm::method::basis::scattered::{Places, fill_from_nodes};
-use lme_mpm::method::basis::{Scratch, fill_from_grid};
+use lme_mpm::method::basis::{Extents, Scratch, fill_from_grid};
 use lme_mpm::method::continuum::shape::Shape;
 use lme_mpm::method::continuum::state::Multiplier;
 use lme_mpm::output::summary;
@@ -192,8 +192,9 @@ pub fn shape(request: &Request) -> Answer {
         true => (0..model.grid.nodes()).map(|I| model.grid.position(I)).collect(),
         false => state.node.x.clone(),
     };
+    let extents = Extents::unstretched(&x);
     let done = if on_grid {
-        fill_from_grid(&mut table, &mut scratch, &mut lambda, &model.basis, &model.grid, &x)
+        fill_from_grid(&mut table, &mut scratch, &mut lambda, &model.basis, &model.grid, extents)
     } else {
         let among = Places { x: &nodes, h: &model.grid.h };
         fill_from_nodes(&mut table, &mut scratch, &mut lambda, &model.basis, among, &x)
