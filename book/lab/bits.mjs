@@ -55,7 +55,7 @@ const rustc = run("rustc", ["--version"]).trim().replace(/ \(.*/, "");
 const processor = cpus()[0].model.replace(/,/g, " ").trim();
 const machine = `${process.arch} ${process.platform}`;
 const platforms = [
-  ["debug", `${rustc}; ${machine}`, native("bits", [])],
+  ["debug", `${rustc}; ${machine}`, native(".", [])],
   ["release", `${rustc}; ${machine}`, native("bits", ["--release"])],
   ["release with target-cpu=native", `${rustc}; ${machine}; ${processor}`, native("native", ["--release"], "-C target-cpu=native")],
   ["WebAssembly", `book/lab/lab.wasm in V8 ${process.versions.v8.replace(/-.*/, "")} of Node ${process.version}`, page()],
