@@ -62,14 +62,13 @@ fn run_in<const D: usize>(
 ) -> Result<Outcome, Box<Stopped>> {
     let model = setup::model::<D>(scene);
     let mut state = setup::initial_state(&model, scene);
-    let mut recorder = Recorder::new(scene, &model, &state);
-    let mut guards = None;
+    let (mut recorder, mut guards) = (Recorder::new(scene, &model, &state), None);
     let mut march = || -> Result<(), BrokenDown> {
         let start = Moment::START;
         time::start(&mut state, &model, &mut |_, _| {}).map_err(|what| what.at(start))?;
         let guards = guards.insert(Guards::new(scene, &model, &state, limit));
-        let work = guards.add_work(&state, start);
-        recorder.record(&state, start, work).map_err(|what| what.at(start))?;
+        let first = recorder.record(&state, start, guards.add_work(&state, start));
+        first.map_err(|what| what.at(start))?;
         for step in 1..=model.steps {
             let moment = Moment::of(step, model.dt);
             time::advance(&mut state, &model, moment.time, &mut |_, _| {})
