@@ -70,11 +70,13 @@ struct ByRows<'a, Item, Row> {
     compute: &'a Compute<'a, Item, Row>,
     table: fn(&[Row]) -> Result<Vec<u8>, Fault>,
     /// Reads a row and its name from the cells of a line.
-    read: &'a dyn Fn(&[&str]) -> Option<(String, Row)>,
+    read: &'a Read<'a, Row>,
 }
 
 type Compute<'a, Item, Row> =
     dyn Fn(&[Item], usize, &mut dyn FnMut()) -> Result<Vec<Row>, Fault> + 'a;
+
+type Read<'a, Row> = dyn Fn(&[&str]) -> Option<(String, Row)> + 'a;
 
 impl<Item, Row: Clone> ByRows<'_, Item, Row> {
     /// Gives all rows, computed or merged; `None` where the list of rows or one of them was
