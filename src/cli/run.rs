@@ -8,7 +8,7 @@ use lme_mpm::output::summary::SummaryLine;
 use lme_mpm::output::{figure, files, report};
 use lme_mpm::run::Warning;
 use lme_mpm::run::table::Table;
-use lme_mpm::scene::fault::Fault;
+use lme_mpm::scene::fault::{Fault, smaller_step, too_large};
 use lme_mpm::scene::{DYKA, Scene, declare};
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
@@ -86,7 +86,9 @@ fn shown(scene: &Scene, lines: &[SummaryLine], history: &Table, show: Show) -> S
 
 /// Puts a time step that is too large where it was written: file, line and key.
 pub fn placed(fault: Fault, scene: &Scene, path: &Path, sets: &[String]) -> Fault {
-    let (Fault::Unstable { .. }, Ok(text)) = (&fault, files::scene_text(path)) else {
+    let (Fault::Unstable { courant, largest, singular }, Ok(text)) =
+        (&fault, files::scene_text(path))
+    else {
         return fault;
     };
     let Ok(declared) = declare(&scene.name, &path.display().to_string(), &text, sets) else {
@@ -96,10 +98,8 @@ pub fn placed(fault: Fault, scene: &Scene, path: &Path, sets: &[String]) -> Faul
         true => "time.fraction_of_critical",
         false => "time.cfl",
     };
-    let message = fault.to_string();
-    let (problem, remedy) = message.split_once("; set ").unwrap_or((&message, ""));
-    let mut error = declared.error(key, problem);
-    error.allowed = remedy.to_string();
+    let mut error = declared.error(key, too_large(*courant, *largest));
+    error.allowed = smaller_step(*singular);
     Fault::Scene(error)
 }
 

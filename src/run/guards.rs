@@ -30,8 +30,21 @@ const FAINT: f64 = 1e-280;
 
 /// The guards of a run.
 pub struct Guards<'a, const D: usize> {
-    model: &'a Model<D>,
+    account: Account<'a, D>,
     check: Check,
+    /// Angular momentum at the start, and what it could be by the speeds (kg m²/s); where
+    /// nothing from outside turns the body.
+    spin: Option<(Vec<f64>, f64)>,
+    watch: Option<Watch<'a, D>>,
+    locking: Option<Warning>,
+    growth: Option<Worst>,
+    turned: Option<Worst>,
+    lost: Option<Worst>,
+}
+
+/// The account of a run's energy: what start and loads have given.
+struct Account<'a, const D: usize> {
+    model: &'a Model<D>,
     /// Velocities and stresses count so many times what they are: 1, but for motions whose
     /// energy would underflow.
     unit: f64,
@@ -41,14 +54,6 @@ pub struct Guards<'a, const D: usize> {
     most: f64,
     /// What the loads do; `None` without loads.
     work: Option<LoadWork<D>>,
-    /// Angular momentum at the start, and what it could be by the speeds (kg m²/s); where
-    /// nothing from outside turns the body.
-    spin: Option<(Vec<f64>, f64)>,
-    watch: Option<Watch<'a, D>>,
-    locking: Option<Warning>,
-    growth: Option<Worst>,
-    turned: Option<Worst>,
-    lost: Option<Worst>,
 }
 
 /// This is the work that the loads have done so far.
@@ -60,6 +65,15 @@ struct LoadWork<const D: usize> {
     step: f64,
     /// u_p of the step before (m).
     before: Vec<SVector<f64, D>>,
+}
+
+impl<const D: usize> Account<'_, D> {
+    /// Gives the energy of `state` beside what was put in.
+    fn balance(&self, state: &State<D>) -> Balance {
+        let (sum, moved) = self.work.as_ref().map_or((0.0, 0.0), |work| (work.sum, work.moved));
+        let gained = energy(self.model, state, self.unit) - self.start - sum;
+        Balance { gained, given: self.start + moved }
+    }
 }
 
 impl<'a, const D: usize> Guards<'a, D> {
@@ -82,12 +96,8 @@ impl<'a, const D: usize> Guards<'a, D> {
         });
         let free = D > 1 && model.fixed.is_empty() && model.loads.is_none();
         Guards {
-            model,
+            account: Account { model, unit, start, most: start, work },
             check: scene.check,
-            unit,
-            start,
-            most: start,
-            work,
             spin: free.then(|| (measure::angular_momentum(&carriers), measure::turning(&carriers))),
             watch: Watch::new(scene, model, state, limit),
             locking: Warning::locking(scene),
@@ -100,8 +110,9 @@ impl<'a, const D: usize> Guards<'a, D> {
     /// Adds what the loads have done in the step that ends at `moment`, and gives their work so
     /// far (J).
     pub fn add_work(&mut self, state: &State<D>, moment: Moment) -> Option<f64> {
-        let (particle, dt) = (&state.particle, self.model.dt);
-        if let (Some(work), Some(loads)) = (&mut self.work, &self.model.loads)
+        let Account { model, start, most, work, .. } = &mut self.account;
+        let (particle, dt) = (&state.particle, model.dt);
+        if let (Some(work), Some(loads)) = (&mut *work, &model.loads)
             && moment.step > 0
         {
             let step = loads.work(particle, &work.before, moment.time - dt, dt);
@@ -109,9 +120,9 @@ impl<'a, const D: usize> Guards<'a, D> {
             work.moved += step.abs();
             work.step = work.step.max(step.abs());
             work.before.copy_from_slice(&particle.u);
-            self.most = self.most.max(self.start + work.sum);
+            *most = most.max(*start + work.sum);
         }
-        self.work.as_ref().map(|work| work.sum)
+        work.as_ref().map(|work| work.sum)
     }
 
     /// Judges the state at `moment`, whose work has been added.
@@ -119,11 +130,11 @@ impl<'a, const D: usize> Guards<'a, D> {
     /// Errors: [`Breakdown::Diverged`], [`Breakdown::Turned`], [`Breakdown::NotFinite`], and those
     /// of the watch.
     pub fn judge(&mut self, state: &State<D>, moment: Moment) -> Result<(), Breakdown> {
-        if let Some(mut watch) = self.watch.take() {
-            watch.follow(state, moment, &|| self.balance(state))?;
-            self.watch = Some(watch);
+        let Guards { watch, account, .. } = self;
+        if let Some(watch) = watch {
+            watch.follow(state, moment, &|| account.balance(state))?;
         }
-        if !moment.step.is_multiple_of(EVERY) && moment.step != self.model.steps {
+        if !moment.step.is_multiple_of(EVERY) && moment.step != account.model.steps {
             return Ok(());
         }
         self.energy(state, moment)?;
@@ -137,14 +148,14 @@ impl<'a, const D: usize> Guards<'a, D> {
     /// they have given so far. No scheme may make energy; one that damps may lose it. The work of
     /// one step does not count: velocity and stress stand up to a step apart.
     fn energy(&mut self, state: &State<D>, moment: Moment) -> Result<(), Breakdown> {
-        let gained = self.balance(state).gained;
-        let most_energetic = || measure::most_energetic(&state.particle, &self.model.law);
+        let gained = self.account.balance(state).gained;
+        let most_energetic = || measure::most_energetic(&state.particle, &self.account.model.law);
         if !gained.is_finite() {
             return Err(Breakdown::NotFinite { particle: most_energetic(), symbol: "energy" });
         }
-        let slack = self.work.as_ref().map_or(0.0, |work| work.step);
+        let slack = self.account.work.as_ref().map_or(0.0, |work| work.step);
         // Where nothing was given there is nothing, or all of it is too much.
-        let share = if gained > slack { (gained - slack) / self.most } else { 0.0 };
+        let share = if gained > slack { (gained - slack) / self.account.most } else { 0.0 };
         if share > self.check.energy {
             let bound = self.check.energy;
             return Err(Breakdown::Diverged { particle: most_energetic(), share, bound });
@@ -174,20 +185,13 @@ impl<'a, const D: usize> Guards<'a, D> {
     /// Notes how much angular momentum a free body has lost or gained.
     fn angular_momentum(&mut self, state: &State<D>, moment: Moment) {
         let Some((start, scale)) = &self.spin else { return };
-        let now = measure::angular_momentum(&state.carriers(self.model.method));
+        let now = measure::angular_momentum(&state.carriers(self.account.model.method));
         let square: f64 =
             now.iter().zip(start).map(|(now, start)| (now - start) * (now - start)).sum();
         let value = libm::sqrt(square) / scale;
         if value > self.lost.map_or(0.0, |seen| seen.value) {
             self.lost = Some(Worst { value, particle: 0, moment });
         }
-    }
-
-    /// Gives the energy of `state` beside what was put in.
-    pub fn balance(&self, state: &State<D>) -> Balance {
-        let (sum, moved) = self.work.as_ref().map_or((0.0, 0.0), |work| (work.sum, work.moved));
-        let gained = energy(self.model, state, self.unit) - self.start - sum;
-        Balance { gained, given: self.start + moved }
     }
 
     /// Counts the passes over all particles that the watch has taken.

@@ -92,17 +92,7 @@ pub enum Fault {
     Points { path: String, line: u64, problem: String, allowed: String },
     #[error("{argument}: {problem}; allowed: {allowed}")]
     Argument { argument: &'static str, problem: String, allowed: &'static str },
-    #[error(
-        "the time step is too large: c Δt / h is {courant:.4}, and {largest:.4} is the most that \
-         stays bounded; set a smaller time.cfl, or time.fraction_of_critical = 0.9, or \
-         time.allow_unstable = true to see it blow up{}",
-        if *singular {
-            " (with one particle per cell the consistent mass matrix is nearly singular: give \
-             the cells more)"
-        } else {
-            ""
-        }
-    )]
+    #[error("{}; set {}", too_large(*courant, *largest), smaller_step(*singular))]
     Unstable { courant: f64, largest: f64, singular: bool },
     #[error(
         "no configuration measured reaches a {quantity} error of {error}: {}",
@@ -128,6 +118,29 @@ pub enum Fault {
         /// What to try, and where the history was left.
         advice: String,
     },
+}
+
+/// Says that c Δt / h is too large, and how large it may be.
+pub fn too_large(courant: f64, largest: f64) -> String {
+    format!(
+        "the time step is too large: c Δt / h is {courant:.4}, and {largest:.4} is the most that \
+         stays bounded"
+    )
+}
+
+/// Says what makes a time step hold, of a mass matrix that may be nearly `singular`.
+pub fn smaller_step(singular: bool) -> String {
+    let more = match singular {
+        true => {
+            " (with one particle per cell the consistent mass matrix is nearly singular: give \
+             the cells more)"
+        }
+        false => "",
+    };
+    format!(
+        "a smaller time.cfl, or time.fraction_of_critical = 0.9, or time.allow_unstable = true to \
+         see it blow up{more}"
+    )
 }
 
 impl Fault {

@@ -29,7 +29,8 @@ pub fn axes<const D: usize>(degree: Degree, at: &Located<D>, grid: &Grid<D>) -> 
     std::array::from_fn(|d| axis(at.cell[d], grid.cells[d], at.xi[d], grid.h[d]))
 }
 
-/// Makes the quadratic functions of one axis with `cells` cells: the nearest node and its neighbours.
+/// Makes the quadratic functions of one axis with `cells` cells: the nearest node and its
+/// neighbours.
 ///
 /// Within half a cell of an end of the grid one neighbour is missing. Its part
 /// is carried by linear extrapolation, 2 to the end node and −1 to the next,
@@ -71,7 +72,8 @@ pub fn cubic(xi: f64) -> (f64, f64) {
 // ANCHOR_END: cubic
 
 // ANCHOR: cubic_axis
-/// Makes the cubic functions of one axis with `cells` cells: the two nodes of the cell and one on either side.
+/// Makes the cubic functions of one axis with `cells` cells: the two nodes of the cell and one on
+/// either side.
 ///
 /// In the first and the last cell one of these is missing, and its part is carried as with the
 /// quadratic ones. A sum Σ N_I q_I is then a natural spline: it is q at the end node, and its
