@@ -59,7 +59,7 @@ fn published_periodic_bar() {
 }
 
 /// The vibrating bar of Tielen, Wobbes and others (2017), for a quarter of its period.
-const VIBRATING: &str = "title = 'Vibrating bar'\nmethod = 'mpm'\nmass = 'consistent'\n\
+pub const VIBRATING: &str = "title = 'Vibrating bar'\nmethod = 'mpm'\nmass = 'consistent'\n\
      body = { length = 25, density = 1, youngs_modulus = 100, poisson_ratio = 0 }\n\
      grid = { cells = 10, particles_per_cell = 4 }\nbasis.kind = 'bspline'\n\
      time = { integrator = 'newmark', cfl = 0.1, end = 1.25 }\n\

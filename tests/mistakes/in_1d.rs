@@ -1,7 +1,7 @@
 //! Mistakes of ports in one dimension.
 
 use super::{Mistake, Seed};
-use crate::support::kit::BAR;
+use crate::support::kit::{BAR, ON_NODE};
 use lme_mpm::method::basis::Basis;
 use lme_mpm::method::continuum::sums;
 use lme_mpm::method::model::State;
@@ -35,20 +35,7 @@ const OTM_3: &[&str] = &[
 const MASSES: &[&str] = &["grid.cells=4", "time.cfl=0.3", "mass=consistent"];
 const UGIMP: &[&str] = &["grid.cells=4", "time.cfl=0.3", "basis.kind=ugimp"];
 /// The bar of `on_node_3.csv`.
-const FLIGHT: &[&str] = &[
-    "body.length=4",
-    "body.density=1",
-    "body.youngs_modulus=1",
-    "grid.cells=4",
-    "grid.beyond.left=0",
-    "time.end=2",
-    "boundary.left=free",
-    "initial_velocity.0.from=0",
-    "initial_velocity.0.to=4",
-    "initial_velocity.0.velocity=0.25",
-    "probe.0.position=4",
-    "probe.1.position=3",
-];
+const FLIGHT: &[&str] = &ON_NODE;
 
 const fn bar(
     name: &'static str,

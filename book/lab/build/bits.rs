@@ -1,6 +1,6 @@
 //! Prints the digest of the history of every shipped scene, for `book/lab/bits.mjs`.
 
-mod digest;
+mod fnv;
 
 use lme_mpm::run::{parse, run};
 use lme_mpm::scene::SHIPPED;
@@ -23,5 +23,5 @@ fn of_history(name: &str, text: &str) -> Result<u64, String> {
     let scene = parse(name, name, text, &[]).map_err(|error| error.to_string())?;
     let outcome = run(&scene, &mut |_| {}).map_err(|stopped| stopped.to_string())?;
     let csv = outcome.history.csv().map_err(|fault| fault.to_string())?;
-    Ok(digest::fnv(digest::START, &csv))
+    Ok(fnv::fnv(fnv::START, &csv))
 }

@@ -1,5 +1,6 @@
 //! One number stands for all that the solver in the page is compiled from.
 
+use super::fnv::{START, fnv};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -16,17 +17,7 @@ const SOURCES: [&str; 9] = [
     "src/setup",
 ];
 
-/// FNV-1a begins with this.
-pub const START: u64 = 0xcbf2_9ce4_8422_2325;
-
-/// Takes FNV-1a on from `hash` over `bytes`.
-pub fn fnv(hash: u64, bytes: &[u8]) -> u64 {
-    let one = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
-    bytes.iter().fold(hash, one)
-}
-
 /// Gives FNV-1a over names and bytes of all sources below `root`, in hexadecimal digits.
-#[allow(dead_code)] // not by `bits`
 pub fn of_sources(root: &Path) -> std::io::Result<String> {
     let mut hash = START;
     for source in SOURCES {

@@ -3,6 +3,7 @@
 //! Further arguments go to `cargo build`.
 
 mod digest;
+mod fnv;
 
 use std::env;
 use std::ffi::OsString;

@@ -82,7 +82,7 @@ const CLASSES: [Class; 7] = [KERNEL, STEP, STEPS, HISTORY, LIMIT, ORDER, NONE];
 
 /// c = 1 and all numbers are multiples of 1/16: a free bar flies on, and its last
 /// particle comes to stand on its last node.
-const ON_NODE: [&str; 12] = [
+pub const ON_NODE: [&str; 12] = [
     "body.length=4",
     "body.density=1",
     "body.youngs_modulus=1",
