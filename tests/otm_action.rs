@@ -1,10 +1,11 @@
 //! OTM: what its action is worth, and three readings of the nodal mass.
 
+use crate::otm::{Kept, thrown_about};
 use crate::support::*;
 use lme_mpm::method::measure;
 use lme_mpm::method::model::{Model, State};
 use lme_mpm::method::time::otm;
-use nalgebra::{SVector, Vector2};
+use nalgebra::SVector;
 use std::fmt::Write;
 
 const READINGS: [&str; 3] = ["kept", "renewed-keeping-velocity", "renewed-keeping-momentum"];
@@ -19,35 +20,18 @@ fn otm_nodal_masses_keep_what_they_should() {
         String::from("γ,nodal mass,momentum drift,angular momentum drift,largest energy drift\n");
     for gamma in ["0.8", "1.8", "4"] {
         for reading in READINGS {
-            let sets = [
-                format!("basis.gamma={gamma}"),
-                format!("nodal_mass={reading}"),
-                "time.end=0.2".into(),
-            ];
-            let (model, mut state) = at_start::<2>(&block(2, &strs(&sets)));
-            for p in 0..state.particle.len() {
-                let x = state.particle.x[p];
-                let wave = Vector2::new((3.0 * x[1]).sin(), (2.0 * x[0]).cos()) * 0.3;
-                state.particle.v[p] = Vector2::new(2.0 - x[1], x[0]) + wave;
-            }
-            otm::start(&mut state, &model).unwrap();
-            let energy = |state: &State<2>| {
-                measure::kinetic_energy(&state.carriers(model.method))
-                    + measure::strain_energy(&state.particle, &model.law)
-            };
-            let momentum = |state: &State<2>| measure::momentum(&state.carriers(model.method));
-            let angular =
-                |state: &State<2>| measure::angular_momentum(&state.carriers(model.method))[0];
-            let (energy_0, momentum_0, angular_0) =
-                (energy(&state), momentum(&state), angular(&state));
+            let sets = [format!("basis.gamma={gamma}"), format!("nodal_mass={reading}")];
+            let (model, mut state) = thrown_about(&strs(&sets));
+            let start = Kept::of(&model, &state);
             let mut drift: f64 = 0.0;
             for step in 1..=model.steps {
                 advance(&model, &mut state, step).unwrap();
-                drift = drift.max((energy(&state) / energy_0 - 1.0).abs());
+                drift = drift.max((Kept::of(&model, &state).energy / start.energy - 1.0).abs());
             }
             let n = 10.0 * model.steps as f64 * f64::EPSILON;
-            let linear = (momentum(&state) - momentum_0).norm() / momentum_0.norm();
-            let spin = (angular(&state) / angular_0 - 1.0).abs();
+            let end = Kept::of(&model, &state);
+            let linear = (end.momentum - start.momentum).norm() / start.momentum.norm();
+            let spin = (end.angular / start.angular - 1.0).abs();
             let name = format!("{gamma},{reading}");
             if reading == "renewed-keeping-velocity" {
                 assert!(linear > 1e-6, "{name}: {linear:e}");
