@@ -48,7 +48,8 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
         // The time step k = 0 moves nothing: it gives the nodes their first values.
         let dt = if k == 0 { 0.0 } else { bar.dt };
         // ANCHOR: one_bar_predict
-        // Step 1, the predictor: (27) and (28), with γ = ½ and the nodal values of k.
+        // Step 1, the predictor: (27) and (28), with γ = ½ and the nodal values of k. From here
+        // to step 9 `v_p` holds the predicted velocity ṽ_p.
         for p in 0..particles {
             let (mut v, mut a) = (0.0, 0.0);
             for &(I, N_Ip, _) in &shape[p] {
@@ -70,7 +71,7 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
                 Some(gamma) => local_max_ent(x_p[p], h, nodes, gamma),
             }?;
         }
-        // Step 3: (13) lumped by rows, and the momentum.
+        // Step 3: (13) lumped by rows, and the momentum p̃_I of the predicted velocities.
         for p in 0..particles {
             for &(I, N_Ip, _) in &shape[p] {
                 m_I[I] += m_p * N_Ip;
@@ -79,7 +80,7 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
         }
         // ANCHOR_END: one_bar_to_nodes
         // ANCHOR: one_bar_strain
-        // Step 4: the essential boundary condition; then v_I = p_I / m_I.
+        // Step 4: the essential boundary condition; then ṽ_I = p̃_I / m_I.
         p_I[0] = 0.0;
         for p in 0..particles {
             // Step 5: (16), the strain increment.
@@ -106,7 +107,7 @@ pub fn one_bar(bar: &OneBar, gamma: Option<f64>) -> Option<Vec<Snapshot>> {
         }
         // ANCHOR_END: one_bar_push
         // ANCHOR: one_bar_to_particles
-        // Step 9, the corrector: (29), with the new forces.
+        // Step 9, the corrector: (29), with the new forces; now `v_p` is v_p again.
         for p in 0..particles {
             for &(I, N_Ip, _) in &shape[p] {
                 v_p[p] += f_I[I] * (N_Ip / m_I[I]) * (0.5 * dt);

@@ -21,7 +21,7 @@
 /// Step 8 carries the nodal momentum on; how far, can be read in two ways.
 ///
 /// The predictor (27) adds Δt p_I/m_I + ½Δt² f_I/m_I, so p_I must be the
-/// momentum *at* k+1. The mapped p_I holds the predicted velocity, short of
+/// momentum *at* k+1. The mapped p̃_I holds the predicted velocity ṽ_p, short of
 /// γ f_I Δt.
 ///
 /// Neither reading makes x_p second order without condition. The next step 3

@@ -19,7 +19,8 @@ pub const NEWMARK_GAMMA: f64 = 0.5;
 // ANCHOR: predict
 /// Step 1, the predictor, moves the particles with the nodal values of k:
 /// (27) x_p += Δt Σ_I p_I N_Ip / m_I + ½ Δt² Σ_I f_I N_Ip / m_I
-/// and (28) v_p += (1 − γ) Δt Σ_I f_I N_Ip / m_I.
+/// and (28) ṽ_p = v_p + (1 − γ) Δt Σ_I f_I N_Ip / m_I, the predicted velocity, which stands in
+/// `particle.v` until step 9.
 ///
 /// p_I / m_I stands as v_I at the nodes. The sum with f_I / m_I is a_p: the last corrector has
 /// taken it, at the same nodes with the same N_Ip.
@@ -69,7 +70,8 @@ pub fn tabulate<const D: usize>(
 
 // ANCHOR: transfer
 /// Step 3 carries mass and momentum to the nodes: m_I = Σ_p m_p N_Ip  (kg) and
-/// p_I = Σ_p m_p v_p N_Ip  (kg m/s); with the consistent mass matrix m_IJ, too.
+/// p_I = Σ_p m_p v_p N_Ip  (kg m/s); with the consistent mass matrix m_IJ, too. In the Algorithm
+/// v_p is the predicted ṽ_p, and p_I and v_I are p̃_I and ṽ_I up to step 8.
 ///
 /// Errors: [`Breakdown::SingularMass`].
 pub fn transfer<const D: usize>(
@@ -189,7 +191,7 @@ pub fn accelerate<const D: usize>(node: &mut Nodes<D>, mass: &mut MassMatrix<D>)
 // ANCHOR_END: balance_forces
 
 // ANCHOR: integrate_momentum
-/// Step 8 integrates the momentum: p_I += γ f_I Δt, or f_I Δt as printed  (kg m/s);
+/// Step 8 integrates the momentum: p_I = p̃_I + γ f_I Δt, or p̃_I + f_I Δt as printed  (kg m/s);
 /// v_I likewise with a_I.
 pub fn integrate_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64, reading: StepEight) {
     let share = match reading {
@@ -204,7 +206,7 @@ pub fn integrate_momentum<const D: usize>(node: &mut Nodes<D>, dt: f64, reading:
 // ANCHOR_END: integrate_momentum
 
 // ANCHOR: correct
-/// Step 9, the corrector (29), adds the second half: v_p += γ Δt Σ_I f_I N_Ip / m_I, all at
+/// Step 9, the corrector (29), adds the second half: v_p = ṽ_p + γ Δt Σ_I f_I N_Ip / m_I, all at
 /// k+1  (m/s).
 pub fn correct<const D: usize>(
     particle: &mut Particles<D>,
