@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// Mends all pages under `html`, and writes what `book.js` shows of an equation.
+/// Mends all pages under `html`, and writes what `pages.js` shows of an equation.
 pub fn pages(html: &Path, formulas: &[Formula]) -> Result<()> {
     let mut files = Vec::new();
     html_files(html, &mut files)?;

@@ -65,7 +65,24 @@ pub fn render(
 
 fn html(context: &KatexContext, tex: &CowStr, display: bool) -> Result<String> {
     let settings = Settings::builder().display_mode(display).build();
-    render_to_string(context, tex, &settings).map_err(|error| anyhow!("formula `{tex}`: {error}"))
+    render_to_string(context, &braced_roots(tex), &settings)
+        .map_err(|error| anyhow!("formula `{tex}`: {error}"))
+}
+
+/// `\sqrt3` → `\sqrt{3}`: without braces the renderer draws the root behind its number.
+fn braced_roots(tex: &str) -> String {
+    let mut pieces = tex.split("\\sqrt");
+    let mut out = pieces.next().unwrap_or("").to_string();
+    for piece in pieces {
+        out.push_str("\\sqrt");
+        match piece.chars().next() {
+            Some(bare) if bare.is_alphanumeric() => {
+                out.push_str(&format!("{{{bare}}}{}", &piece[bare.len_utf8()..]));
+            }
+            _ => out.push_str(piece),
+        }
+    }
+    out
 }
 
 /// What stands for a formula until the pages are built.
