@@ -39,7 +39,7 @@ fn files(folder: &str, ending: &str) -> Vec<(String, String)> {
 fn chapters() -> Vec<(String, String)> {
     let name = |path: &str| path.replacen("book/src/", "", 1);
     let chapters = files("book/src", ".md").into_iter().map(|(path, text)| (name(&path), text));
-    chapters.filter(|(path, _)| path != "SUMMARY.md").collect()
+    chapters.filter(|(path, _)| !["SUMMARY.md", "404.md"].contains(&path.as_str())).collect()
 }
 
 fn records(path: &str) -> Vec<Vec<String>> {

@@ -155,7 +155,8 @@ fn normal(path: &Path) -> PathBuf {
     out
 }
 
-fn html_files(dir: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
+/// All pages below `dir`, in order.
+pub fn html_files(dir: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
     for entry in fs::read_dir(dir)? {
         let path = entry?.path();
         if path.is_dir() {

@@ -3,43 +3,74 @@
 //! | directive | gives |
 //! |---|---|
 //! | `{{#code FILE:ANCHOR}}` | anchored lines of the source |
-//! | `{{#side}}` … `{{#beside}}` … `{{#end}}` | prose beside code |
+//! | `{{#side}}` … `{{#beside}}` … `{{#end}}` | prose and the code that it explains |
 //! | `{{#pin SNAPSHOT}}` | an approved text |
 //! | `{{#file FILE}}` | the text of a file of the repository |
-//! | `{{#table FILE}}` | a CSV file, or a snapshot that holds CSV, as a table |
+//! | `{{#table FILE | CAPTION}}` | a CSV file, or a snapshot that holds CSV, as a table |
+//! | `{{#caption NAME | CAPTION}}` | the caption of the table that is typed below it |
 //! | `{{#value FILE KEY [percent]}}` | one approved number, in a sentence |
-//! | `{{#figure SNAPSHOT | CAPTION}}` | an approved picture |
+//! | `{{#figure SNAPSHOT | CAPTION [| ALTERNATIVE]}}` | an approved picture |
+//! | `{{#see FILE}}`, `{{#see NAME}}` | "Figure 7", "Table 3": a link to what has this caption |
 //! | `{{#equations}}`, `{{#symbols}}` | the two indexes |
 
-use crate::index;
+use crate::captions::{Caption, Captions, parts};
 use crate::listing::{Definitions, escape, page_of};
-use crate::{maths, read};
+use crate::maths::{self, Formula};
+use crate::{index, pair, read};
 use anyhow::{Context, Result, anyhow, bail};
 use mdbook_preprocessor::book::{Book, BookItem, Chapter, SectionNumber};
 use mdbook_preprocessor::{Preprocessor, PreprocessorContext};
 use std::cell::RefCell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
+
+/// What the pages need beside what mdBook makes of the chapters.
+#[derive(Default)]
+pub struct Gathered {
+    /// The pictures that chapters asked for.
+    pub figures: BTreeSet<String>,
+    pub formulas: Vec<Formula>,
+}
 
 pub struct Directives {
     definitions: Definitions,
-    figures: Rc<RefCell<BTreeSet<String>>>,
+    /// "(16)" and its place, `weak-form.html#eq-16`.
+    equations: BTreeMap<String, String>,
+    gathered: Rc<RefCell<Gathered>>,
+}
+
+/// Where in the book the expanding stands.
+struct Place<'a> {
+    chapter: String,
+    to_root: String,
+    all_captions: &'a Captions,
+    /// Those that the chapter has not come to.
+    captions: Box<dyn Iterator<Item = &'a Caption> + 'a>,
+    in_pair: bool,
 }
 
 impl Directives {
     pub fn new() -> Result<Self> {
-        Ok(Directives { definitions: Definitions::collect()?, figures: Rc::default() })
+        Ok(Directives {
+            definitions: Definitions::collect()?,
+            equations: index::places()?,
+            gathered: Rc::default(),
+        })
     }
 
-    /// The pictures that chapters asked for, filled in by the build.
-    pub fn figures(&self) -> Rc<RefCell<BTreeSet<String>>> {
-        self.figures.clone()
+    /// Filled in by the build.
+    pub fn gathered(&self) -> Rc<RefCell<Gathered>> {
+        self.gathered.clone()
     }
 
-    fn chapter(&self, chapter: &Chapter) -> Result<String> {
+    fn chapter(&self, chapter: &Chapter, all_captions: &Captions) -> Result<String> {
         let Some(path) = &chapter.path else { return Ok(chapter.content.clone()) };
-        let to_root = "../".repeat(path.components().count() - 1);
         let name = path.display().to_string();
+        let to_root = "../".repeat(path.components().count() - 1);
+        let captions = Box::new(all_captions.of(&name));
+        let chapter_name = name.clone();
+        let mut place =
+            Place { chapter: chapter_name, to_root, all_captions, captions, in_pair: false };
         let mut text = String::new();
         let mut rest = chapter.content.as_str();
         while let Some((before, after)) = rest.split_once("{{#") {
@@ -48,47 +79,68 @@ impl Directives {
                 .with_context(|| format!("{name}: a directive without its end"))?;
             text.push_str(before);
             let expanded = self
-                .expand(directive, &to_root)
+                .expand(directive, after, &mut place)
                 .with_context(|| format!("{name}: {{{{#{directive}}}}}"))?;
             text.push_str(&expanded);
             rest = after;
         }
         text.push_str(rest);
-        maths::render(&name, &text)
+        let formulas = &mut self.gathered.borrow_mut().formulas;
+        maths::render(&name, &text, formulas, |number| {
+            Some(format!("{}{}", place.to_root, self.equations.get(number)?))
+        })
     }
 
-    fn expand(&self, directive: &str, to_root: &str) -> Result<String> {
+    fn expand(&self, directive: &str, after: &str, place: &mut Place) -> Result<String> {
         let (word, argument) = directive.split_once(' ').unwrap_or((directive, ""));
         let argument = argument.trim();
         match word {
             "code" => {
                 let (file, anchor) = argument.split_once(':').context("wants FILE:ANCHOR")?;
-                self.definitions.listing(file, anchor, to_root)
+                self.definitions.listing(file, anchor, &place.to_root, place.in_pair)
             }
-            "side" => Ok("<div class=\"side\"><div class=\"prose\">\n".into()),
+            "side" => {
+                place.in_pair = true;
+                let layout = pair::layout(&self.definitions, after)?;
+                Ok(format!("<div class=\"side {layout}\"><div class=\"prose\">\n"))
+            }
             "beside" => Ok("</div><div class=\"beside\">\n".into()),
-            "end" => Ok("</div></div>\n".into()),
+            "end" => {
+                place.in_pair = false;
+                Ok("</div></div>\n".into())
+            }
             "pin" => Ok(format!("```text\n{}\n```", snapshot(argument)?.trim_end())),
             "file" => Ok(read(argument)?.trim_end().to_string()),
-            "table" => table(argument),
-            "value" => value(argument),
-            "figure" => {
-                let (file, caption) = argument.split_once('|').context("wants FILE | CAPTION")?;
-                let (file, caption) = (file.trim(), caption.trim());
-                if !crate::root().join(file).is_file() {
-                    bail!("there is no file {file}");
-                }
-                self.figures.borrow_mut().insert(file.to_string());
-                let source = format!("{to_root}figures/{}", figure_name(file));
-                let alt = escape(&caption.replace(['$', '`'], ""));
-                Ok(format!(
-                    "<figure>\n<img src=\"{source}\" alt=\"{alt}\">\n<figcaption>\n\n{caption}\n\n</figcaption></figure>"
-                ))
+            "table" => {
+                let (file, caption, _) = parts(argument)?;
+                Ok(format!("{}{}", above_table(caption, place)?, table(file)?))
             }
-            "equations" => index::equations(&self.definitions, to_root),
-            "symbols" => index::symbols(to_root),
+            "caption" => above_table(parts(argument)?.1, place),
+            "value" => value(argument),
+            "figure" => self.figure(argument, place),
+            "see" => place.all_captions.see(argument, &place.chapter, &place.to_root),
+            "equations" => index::equations(&self.definitions, &place.to_root),
+            "symbols" => index::symbols(),
             _ => bail!("this directive is not known"),
         }
+    }
+
+    /// A picture that is a link to itself, at its full size.
+    fn figure(&self, argument: &str, place: &mut Place) -> Result<String> {
+        let (file, caption, alternative) = parts(argument)?;
+        if !crate::root().join(file).is_file() {
+            bail!("there is no file {file}");
+        }
+        self.gathered.borrow_mut().figures.insert(file.to_string());
+        let number = place.captions.next().context("has no number")?;
+        let alternative = escape(&maths::words(alternative.unwrap_or(caption))?);
+        let picture = format!("{}figures/{}", place.to_root, figure_name(file));
+        Ok(format!(
+            "<figure id=\"{}\">\n<a href=\"{picture}\"><img src=\"{picture}\" alt=\"{alternative}\"></a>\n\
+             <figcaption>\n\n**{}.** {caption}\n\n</figcaption></figure>",
+            number.id(),
+            number.title()
+        ))
     }
 
     /// The source as chapters of its own, numbered from `number` on, so that code
@@ -122,8 +174,9 @@ impl Preprocessor for Directives {
     }
 
     fn run(&self, _: &PreprocessorContext, mut book: Book) -> Result<Book> {
+        let captions = Captions::collect(&book);
         let mut failure = None;
-        book.for_each_chapter_mut(|chapter| match self.chapter(chapter) {
+        book.for_each_chapter_mut(|chapter| match self.chapter(chapter, &captions) {
             Ok(content) => chapter.content = content,
             Err(error) => failure = failure.take().or(Some(error)),
         });
@@ -136,6 +189,12 @@ impl Preprocessor for Directives {
         }
         Ok(book)
     }
+}
+
+fn above_table(caption: &str, place: &mut Place) -> Result<String> {
+    let number = place.captions.next().context("has no number")?;
+    let (id, title) = (number.id(), number.title());
+    Ok(format!("<div class=\"caption\" id=\"{id}\">\n\n**{title}.** {caption}\n\n</div>\n\n"))
 }
 
 /// `snapshots/name.snap.svg` → `name.svg`.

@@ -42,21 +42,21 @@ fn linked(definitions: &Definitions, place: &str, to_root: &str) -> Result<Strin
     Ok(format!("[`{item}`]({to_root}{}#L{line})", page_of(file)))
 }
 
-/// `data/symbols.csv` as a table; "(14)" in its last column leads to the chapter.
-pub fn symbols(to_root: &str) -> Result<String> {
-    let equations = read("data/equations.csv")?;
-    let mut chapters = BTreeMap::new();
-    for row in csv::Reader::from_reader(equations.as_bytes()).records() {
+/// "(16)" → `weak-form.html#eq-16`, for every equation that stands in the book.
+pub fn places() -> Result<BTreeMap<String, String>> {
+    let text = read("data/equations.csv")?;
+    let mut places = BTreeMap::new();
+    for row in csv::Reader::from_reader(text.as_bytes()).records() {
         let row = row?;
-        chapters.insert(format!("({})", &row[0]), row[4].to_string());
+        if !row[0].is_empty() && !row[4].is_empty() {
+            places.insert(format!("({})", &row[0]), row[4].to_string());
+        }
     }
-    let linked = |first: &str| {
-        let link = |name: &str| match chapters.get(name) {
-            Some(chapter) if !chapter.is_empty() => format!("[{name}]({to_root}{chapter})"),
-            _ => name.to_string(),
-        };
-        first.split(", ").map(link).collect::<Vec<_>>().join(", ")
-    };
+    Ok(places)
+}
+
+/// `data/symbols.csv` as a table; "(14)" in its last column becomes a link as everywhere.
+pub fn symbols() -> Result<String> {
     let text = read("data/symbols.csv")?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let mut out = String::from(
@@ -67,8 +67,7 @@ pub fn symbols(to_root: &str) -> Result<String> {
         let [paper, code, unit, shape, meaning, first] =
             std::array::from_fn(|at| row.get(at).unwrap_or("").to_string());
         out.push_str(&format!(
-            "| ${paper}$ | `{code}` | {unit} | {shape} | {meaning} | {} |\n",
-            linked(&first)
+            "| ${paper}$ | `{code}` | {unit} | {shape} | {meaning} | {first} |\n"
         ));
     }
     Ok(out)

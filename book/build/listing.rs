@@ -154,14 +154,25 @@ impl Definitions {
         out
     }
 
-    /// A listing for a chapter: the anchored lines under a link to their place.
-    pub fn listing(&self, file: &str, anchor: &str, to_root: &str) -> Result<String> {
+    /// A listing for a chapter: the anchored lines under a link to their place. Where they
+    /// stand in a pair, the lines that would run out of sight unfold.
+    pub fn listing(&self, file: &str, anchor: &str, to_root: &str, folds: bool) -> Result<String> {
         let (code, line) = self.anchored(file, anchor)?;
-        let page = page_of(file);
+        let html = self.html(&code, file, to_root);
+        let lines: Vec<&str> = html.split('\n').collect();
+        let (shown, hidden) = if folds { shown_lines(&code) } else { (lines.len(), 0) };
+        let (head, rest) = (lines[..shown].join("\n"), lines[shown..].join("\n"));
+        let more = match hidden {
+            0 => String::new(),
+            _ => format!(
+                "\n\n<details class=\"rest\"><summary>Show the whole: {hidden} more lines</summary>\n\n\
+                 <pre class=\"listing\">\n{rest}\n</pre>\n\n</details>\n"
+            ),
+        };
+        let place = format!("{to_root}{}#L{line}", page_of(file));
         Ok(format!(
-            "<pre class=\"listing\" id=\"code-{anchor}\"><a class=\"place\" \
-             href=\"{to_root}{page}#L{line}\">{file}:{line}</a>\n{}\n</pre>",
-            self.html(&code, file, to_root)
+            "<pre class=\"listing\" id=\"code-{anchor}\"><a class=\"place\" href=\"{place}\">\
+             {file}:{line}</a>\n{head}\n</pre>{more}"
         ))
     }
 
@@ -197,6 +208,19 @@ fn takes_self(lines: &[&str]) -> bool {
     let inside = lines[0].split_once('(').map_or("", |(_, inside)| inside);
     let first = if inside.is_empty() { lines.get(1).unwrap_or(&"") } else { &inside };
     ["self", "&self", "mut self", "&mut self"].iter().any(|own| first.trim().starts_with(own))
+}
+
+/// How many lines of a listing are shown at once, and how many unfold: a long one is cut where a
+/// paragraph or an item of it ends.
+pub fn shown_lines(code: &str) -> (usize, usize) {
+    const MOST: usize = 25;
+    let lines: Vec<&str> = code.lines().collect();
+    if lines.len() <= MOST + 3 {
+        return (lines.len(), 0);
+    }
+    let ends = |&n: &usize| lines[n].is_empty() || lines[n - 1].starts_with('}');
+    let shown = (MOST / 2..=MOST).rev().find(ends).unwrap_or(MOST);
+    (shown, lines.len() - shown)
 }
 
 /// `src/time/steps.rs` → `source/src/time/steps.html`.

@@ -4,11 +4,14 @@
 //! every directive, formula, link and anchor is checked, before and after the
 //! build, and the first thing wrong ends it.
 
+mod captions;
 mod check;
 mod directives;
+mod finish;
 mod index;
 mod listing;
 mod maths;
+mod pair;
 
 use anyhow::{Context, Result, bail};
 use base64::Engine;
@@ -47,19 +50,21 @@ fn build(arguments: &[String]) -> Result<()> {
     };
     let book_dir = Path::new(env!("CARGO_MANIFEST_DIR"));
     let preprocessor = directives::Directives::new()?;
-    let figures = preprocessor.figures();
+    let gathered = preprocessor.gathered();
     let mut book = MDBook::load(book_dir)?;
     book.with_preprocessor(preprocessor);
     book.build()?;
 
     let html = book.build_dir_for("html");
     copy_into(&book_dir.join("theme/katex/fonts"), &html.join("theme/katex/fonts"))?;
-    for figure in figures.borrow().iter() {
+    let gathered = gathered.borrow();
+    for figure in &gathered.figures {
         let to = html.join("figures").join(directives::figure_name(figure));
         fs::create_dir_all(html.join("figures"))?;
         fs::copy(root().join(figure), &to).with_context(|| format!("cannot copy {figure}"))?;
     }
     lab(&html.join("lab"))?;
+    finish::pages(&html, &gathered.formulas)?;
     let counted = check::pages(&html)?;
     println!("{counted}");
     let first = html.join("index.html").canonicalize()?;
