@@ -1,7 +1,7 @@
 //! The tie between paper, code, tests and book, held from both ends; and every
 //! command in book and README, run as it is printed.
 
-use crate::support::program;
+use crate::support::{approve, program};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -198,6 +198,93 @@ fn snapshots_have_tests() {
     }
 }
 
+/// The rows and columns of a long table that stand in view above its fold: the short table's
+/// name, the long one's, words that a row must have (rows with any of these), and columns.
+type Short = (&'static str, &'static str, &'static [&'static str], &'static [usize]);
+
+const SHORT: [Short; 10] = [
+    (
+        "orders_in_time",
+        "finite__orders_in_time",
+        &["newmark,rate", "newmark,neo", "newmark as printed,rate"],
+        &[0, 1, 2, 4, 5, 6],
+    ),
+    (
+        "spinning_bar",
+        "finite__spinning_bar",
+        &["otm,24", "mpm linear,24", "mpm bspline consistent,24"],
+        &[0, 2, 3, 4, 5, 6],
+    ),
+    (
+        "ripple",
+        "ripple__energy",
+        &["newmark,0.01,", "(first),0.01,", "(last),0.01,", "(0.8),0.01,"],
+        &[0, 2, 4, 5, 7],
+    ),
+    (
+        "crossing",
+        "orders__study",
+        &[
+            "linear lumped,1",
+            "ugimp lumped,1",
+            "bspline lumped,1",
+            "lme 0.8 lumped,1",
+            "lme 0.8 consistent,1",
+            "lme 1.8 lumped,1",
+        ],
+        &[0, 2, 3, 4, 5, 6],
+    ),
+    ("limits", "stability__limits", &[",2,0,"], &[0, 1, 4, 7, 12]),
+    (
+        "watch",
+        "watch__cases",
+        &[
+            "1 per cell,1.199",
+            "1 per cell,0.999",
+            "(last),0.500",
+            "(last),0.100",
+            "consistent,0.322",
+            "linear; lumped",
+        ],
+        &[0, 1, 2, 3, 5],
+    ),
+    (
+        "trade",
+        "trade__bar",
+        &[
+            "linear time.integrator=newmark grid.cells=40 grid.particles_per_cell=1 time.cfl=0.998",
+            "lumped basis.kind=linear time.integrator=newmark grid.cells=40 grid.particles_per_cell=2",
+            "gamma=6 time.integrator=newmark grid.cells=40 grid.particles_per_cell=1 time.cfl=0.95",
+            "consistent basis.kind=lme basis.gamma=0.8",
+        ],
+        &[0, 1, 2, 3, 4, 5],
+    ),
+    ("verdicts", "verdicts__shipped", &["dyka,", "gravity,", "manufactured,"], &[0, 1, 2, 3, 4]),
+    ("gamma", "gamma__study", &[",0.8,", ",1.8,", ",4,", ",50,"], &[0, 1, 2, 3, 4, 7, 11]),
+    ("vibrating_bar", "published__vibrating_bar", &[",20,", ",80,"], &[0, 1, 2, 3, 4, 5]),
+];
+
+/// A short table has rows and columns of the long one that stands in the fold below it.
+#[test]
+fn short_tables_are_parts_of_long_ones() {
+    for (short, long, words, columns) in SHORT {
+        let text = read(&format!("snapshots/{long}.snap"));
+        let body = text.splitn(3, "---\n").nth(2).unwrap();
+        let mut lines = csv::ReaderBuilder::new().has_headers(false).from_reader(body.as_bytes());
+        let mut table = csv::Writer::from_writer(Vec::new());
+        for (n, row) in lines.records().map(Result::unwrap).enumerate() {
+            let line = row.iter().collect::<Vec<_>>().join(",");
+            if n == 0 || words.iter().any(|word| line.contains(word)) {
+                table.write_record(columns.iter().map(|&at| &row[at])).unwrap();
+            }
+        }
+        let table = String::from_utf8(table.into_inner().unwrap()).unwrap();
+        let rows = table.lines().count();
+        assert!((words.len().max(4)..=14).contains(&rows), "{short}: {rows} rows");
+        approve(&format!("short__{short}"), &table);
+    }
+}
+
 /// Every anchor in the code is quoted by a chapter, and every quoted one exists.
 #[test]
 fn anchors_are_quoted() {
@@ -274,6 +361,59 @@ fn chapters_end_with_an_exercise() {
         assert!(exercise.contains("```console\n$ "), "{chapter}: no command");
         assert!(!exercise.contains("\n## "), "{chapter}: something after the exercise");
     }
+}
+
+/// Chapters that say what they need and what they give, with graded exercises whose answers are
+/// folded away.
+const TAUGHT: [&str; 20] = [
+    "riemann",
+    "loads",
+    "sides",
+    "finite-strain",
+    "conservation",
+    "order",
+    "crossing",
+    "stability",
+    "cost",
+    "step-cost",
+    "gamma",
+    "published",
+    "extremes",
+    "testing",
+    "porting",
+    "grid",
+    "readings",
+    "map",
+    "changing",
+    "scene-reference",
+];
+
+/// Each of them begins with its two lines, and its exercises are numbered, have a grade, and a
+/// folded answer each.
+#[test]
+fn chapters_teach() {
+    let mut exercises = 0;
+    for chapter in TAUGHT {
+        let text = read(&format!("book/src/{chapter}.md"));
+        let top = text.split("\n## ").next().unwrap();
+        for line in ["\n**What it needs.** ", "\n**What it gives.** "] {
+            assert!(top.contains(line), "{chapter}: no {line}");
+        }
+        let (_, end) = text.split_once("\n## Exercises\n").unwrap();
+        let end = end.split("\n### ").next().unwrap();
+        let tasks: Vec<&str> =
+            end.split("\n**").skip(1).filter(|task| task.contains('●')).collect();
+        assert!((3..=6).contains(&tasks.len()), "{chapter}: {} exercises", tasks.len());
+        for (n, task) in (1..).zip(&tasks) {
+            let head = task.split("**").next().unwrap();
+            let graded = [" ● (", " ●● (", " ●●● ("].iter().any(|grade| head.contains(grade));
+            assert!(head.starts_with(&format!("{n} ")) && graded, "{chapter}: `{head}`");
+            let answer = task.contains("<details>\n<summary>Answer</summary>\n\n**Answer.** ");
+            assert!(answer && task.trim_end().ends_with("</details>"), "{chapter}: {n}");
+        }
+        exercises += tasks.len();
+    }
+    assert!(exercises >= 80, "{exercises}");
 }
 
 /// Every chapter is in the table of contents.
@@ -386,19 +526,16 @@ fn commands_of_the_book_run() {
     assert!(count >= 15, "{count}");
 }
 
-/// The line of a command fits a page; a longer command goes on in the next one.
+/// The line of a command fits a page, a longer command goes on in the next one; and so do the
+/// lines that it prints.
 #[test]
 fn commands_of_the_book_are_readable() {
     for (chapter, text) in chapters() {
         for block in text.split("```console\n").skip(1) {
             let block = block.split("```").next().unwrap();
-            let mut goes_on = false;
             for line in block.lines() {
-                if goes_on || line.starts_with("$ ") {
-                    let length = line.chars().count();
-                    assert!(length <= 95, "{chapter}: {length} characters in `{line}`");
-                    goes_on = line.ends_with('\\');
-                }
+                let length = line.chars().count();
+                assert!(length <= 95, "{chapter}: {length} characters in `{line}`");
             }
         }
     }
