@@ -147,12 +147,6 @@ fn lme_against_60_digits() {
     approve("lme__accuracy", &text);
 }
 
-/// Fig. 3 of the paper, drawn anew.
-#[test]
-fn lme_figure_3() {
-    approve_picture("lme__figure_3", figures::local_max_ent(&[0.8, 1.8, 4.0]).unwrap());
-}
-
 /// |r| before each step of plain Newton at x among the nodes −8 … 8 with the spacing 1.
 fn plain_residuals(gamma: f64, x: f64) -> Vec<f64> {
     let xi: Vec<_> = (-8..=8).map(|I| Vector1::new(x - f64::from(I))).collect();
