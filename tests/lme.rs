@@ -194,7 +194,12 @@ fn lme_plain_newton_fails() {
     let lists: Vec<_> = [1.8, 4.0, 8.0, 12.0, 20.0].into_iter().map(curve).collect();
     let svg = figure::curves(
         &lists,
-        &Axes::new("Plain Newton from λ = 0 at x = 0.4", "step", "log10 |r|", false),
+        &Axes::new(
+            "Plain Newton from λ = 0 at x = 0.4h",
+            "step of Newton's method [–]",
+            "log₁₀ |r| [–]",
+            false,
+        ),
     );
     approve_picture("lme__plain_newton", svg);
 }

@@ -18,6 +18,8 @@ mod extremes_of_scenes;
 mod figures_bar;
 mod figures_basis;
 mod figures_lme;
+mod figures_otm;
+mod figures_weak_form;
 mod finite;
 mod fuzz;
 mod gate;

@@ -207,9 +207,23 @@ pub fn curves(lists: &[(impl AsRef<str>, CurvePoints)], axes: &Axes) -> String {
         width: 2.0,
         dash: DASHES[n % DASHES.len()],
         dots: points.len() <= FEW_POINTS,
-        legend: name.as_ref().to_string(),
+        legend: in_words(name.as_ref()),
     });
     draw(curves.collect(), axes)
+}
+
+/// Writes the keys of scenes and studies as the words that a legend has.
+fn in_words(name: &str) -> String {
+    const WORDS: [(&str, &str); 7] = [
+        ("bspline", "B-splines"),
+        ("ugimp", "uGIMP"),
+        ("lme", "local max-ent"),
+        ("mpm", "MPM"),
+        ("otm", "OTM"),
+        ("newmark", "Newmark"),
+        ("euler", "Euler"),
+    ];
+    WORDS.iter().fold(name.to_string(), |name, (key, word)| name.replace(key, word))
 }
 
 /// An effort is a point of a work-precision diagram: what it took, its relative error, and
@@ -243,7 +257,7 @@ pub fn work_precision(
     for (n, (name, points)) in groups(efforts).into_iter().enumerate() {
         if !points.is_empty() {
             let (colour, marker) = (COLOURS[n % COLOURS.len()], MARKERS[n % MARKERS.len()]);
-            plots.push(scatter(points, colour, marker).with_legend(name).into());
+            plots.push(scatter(points, colour, marker).with_legend(in_words(name)).into());
         }
     }
     let worst = efforts.iter().filter_map(|effort| effort.error).fold(0.0, f64::max);
