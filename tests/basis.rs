@@ -332,7 +332,7 @@ fn basis_figure() {
     let lists: Vec<_> = bases.iter().map(|(name, b)| (name.to_string(), curve(b))).collect();
     let svg = figure::curves(
         &lists,
-        &Axes::new("One function of each basis", "(x − x_I)/h [–]", "N [–]", false),
+        &Axes::new("One function of each basis", "distance from the node / h [–]", "N [–]", false),
     );
     approve_picture("basis__shapes", svg);
 }

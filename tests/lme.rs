@@ -147,12 +147,6 @@ fn lme_against_60_digits() {
     approve("lme__accuracy", &text);
 }
 
-/// Fig. 3 of the paper, drawn anew.
-#[test]
-fn lme_figure_3() {
-    approve_picture("lme__figure_3", figures::local_max_ent(&[0.8, 1.8, 4.0]).unwrap());
-}
-
 /// |r| before each step of plain Newton at x among the nodes −8 … 8 with the spacing 1.
 fn plain_residuals(gamma: f64, x: f64) -> Vec<f64> {
     let xi: Vec<_> = (-8..=8).map(|I| Vector1::new(x - f64::from(I))).collect();
@@ -200,7 +194,12 @@ fn lme_plain_newton_fails() {
     let lists: Vec<_> = [1.8, 4.0, 8.0, 12.0, 20.0].into_iter().map(curve).collect();
     let svg = figure::curves(
         &lists,
-        &Axes::new("Plain Newton from λ = 0 at x = 0.4", "step", "log10 |r|", false),
+        &Axes::new(
+            "Plain Newton from λ = 0 at x = 0.4h",
+            "step of Newton's method [–]",
+            "log₁₀ |r| [–]",
+            false,
+        ),
     );
     approve_picture("lme__plain_newton", svg);
 }

@@ -217,6 +217,11 @@ fn ripple_figure() {
         let point = |(k, energy): (usize, &f64)| (k as f64 * dt / PERIOD, energy / energies[0]);
         (scheme.name, energies.iter().enumerate().map(point).collect())
     });
-    let axes = Axes::new("Energy of mode 1", "periods [–]", "energy over its start [–]", false);
+    let axes = Axes::new(
+        "Energy of mode 1",
+        "time / period [–]",
+        "energy / energy at the start [–]",
+        false,
+    );
     approve_picture("ripple__two_periods", curves(&lists, &axes));
 }

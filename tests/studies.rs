@@ -432,7 +432,7 @@ fn trade_on_the_bar() {
     }
     approve("trade__bar", &table);
     let title = "Velocity error against counted work, 40 cells";
-    let x_label = "pairs of particle and node";
+    let x_label = "pairs of particle and node, all steps [–]";
     let svg = figure::work_precision(title, x_label, &efforts, &Vec::new());
     approve_picture("trade__bar_figure", svg);
 }
@@ -535,7 +535,7 @@ fn gamma_from_end_to_end() {
         figure::curves(&curves("velocity"), &Axes::new(title, "γ [–]", "relative error [–]", true));
     approve_picture("gamma__velocity", svg);
     let title = "Frequency error of a wave of eight cells";
-    let y_label = "relative error, size [–]";
+    let y_label = "size of the relative error [–]";
     let svg = figure::curves(&curves("dispersion"), &Axes::new(title, "γ [–]", y_label, true));
     approve_picture("gamma__dispersion", svg);
 }

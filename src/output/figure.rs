@@ -5,10 +5,11 @@ use crate::run::table::Table;
 use crate::scene::keys::AXES;
 use crate::scene::{Probe, Scene};
 use kuva::prelude::*;
+use kuva::render::render::Primitive;
 use std::sync::Arc;
 
-/// A picture has this width and height (px).
-const SIZE: (f64, f64) = (860.0, 420.0);
+/// A picture has this width and height (px): its words are legible in a column of 500 px too.
+const SIZE: (f64, f64) = (640.0, 420.0);
 
 /// The exact curve stands behind in grey; the colours are safe for the colour-blind (Okabe &
 /// Ito 2008).
@@ -18,6 +19,22 @@ pub const COLOURS: [&str; 10] = [
     "#999933", "#44aa99",
 ];
 
+/// Lines differ by their dashes as well as by their colours (px on, px off).
+pub const DASHES: [&str; 7] = ["", "9 4", "2 3", "10 3 2 3", "18 4", "5 2", "18 3 3 3 3 3"];
+
+/// Clouds of points differ by their markers.
+const MARKERS: [MarkerShape; 6] = [
+    MarkerShape::Circle,
+    MarkerShape::Square,
+    MarkerShape::Triangle,
+    MarkerShape::Diamond,
+    MarkerShape::TriangleDown,
+    MarkerShape::Plus,
+];
+
+/// A curve of so few points shows each of them.
+const FEW_POINTS: usize = 20;
+
 /// A curve has these points, from one end to the other.
 pub type CurvePoints = Vec<(f64, f64)>;
 
@@ -26,6 +43,10 @@ pub struct Curve {
     pub points: CurvePoints,
     pub colour: &'static str,
     pub width: f64,
+    /// One of [`DASHES`]; empty: a solid line.
+    pub dash: &'static str,
+    /// Whether a dot stands at each point.
+    pub dots: bool,
     /// Empty: not in the legend.
     pub legend: String,
 }
@@ -56,39 +77,71 @@ fn layout(plots: &[Plot], size: (f64, f64), axes: &Axes) -> Layout {
         .with_width(size.0)
         .with_height(size.1)
         .with_title(&axes.title)
-        .with_title_size(16)
+        .with_title_size(18)
+        .with_label_size(17)
+        .with_tick_size(15)
+        .with_body_size(15)
         .with_x_label(&axes.x_label)
         .with_y_label(&axes.y_label)
         .with_x_tick_format(TickFormat::Custom(Arc::new(tick)))
         .with_y_tick_format(TickFormat::Custom(Arc::new(tick)))
-        .with_legend_position(LegendPosition::OutsideRightTop);
+        .with_legend_position(LegendPosition::OutsideBottomColumns)
+        .with_legend_col_limit(2)
+        .with_legend_box(false);
     if axes.log { layout.with_log_scale() } else { layout }
 }
 
 /// Draws curves; the x axis of plain axes begins at 0 or below.
 pub fn draw(curves: Vec<Curve>, axes: &Axes) -> String {
     let (plots, layout) = laid_out(curves, axes);
-    own_ids(&render_to_svg(plots, layout))
+    rendered(plots, layout)
+}
+
+/// Renders a picture; the keys of lines in its legend are long enough to show their dashes.
+fn rendered(plots: Vec<Plot>, layout: Layout) -> String {
+    const KEY: f64 = 42.0;
+    let mut scene = render_multiple(plots, layout);
+    for element in &mut scene.elements {
+        if let Primitive::Line { x1, x2, y1, y2, stroke_width, .. } = element
+            && y1 == y2
+            && *x2 - *x1 < KEY
+            && *stroke_width == 2.0
+        {
+            *x1 = *x2 - KEY;
+        }
+    }
+    own_ids(&SvgBackend.render_scene(&scene))
 }
 
 fn laid_out(curves: Vec<Curve>, axes: &Axes) -> (Vec<Plot>, Layout) {
     let xs = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.0);
     let (first, last) = (xs().fold(0.0, f64::min), xs().fold(0.0, f64::max));
-    let plots: Vec<Plot> = curves
-        .into_iter()
-        .map(|curve| {
-            let line = LinePlot::new()
-                .with_data(curve.points)
-                .with_color(curve.colour)
-                .with_stroke_width(curve.width);
-            Plot::from(if curve.legend.is_empty() { line } else { line.with_legend(curve.legend) })
-        })
-        .collect();
+    let plots: Vec<Plot> = curves.into_iter().flat_map(plots_of).collect();
     let layout = layout(&plots, SIZE, axes);
     match axes.log {
         true => (plots, layout),
         false => (plots, layout.with_x_axis_min(first).with_x_axis_max(last)),
     }
+}
+
+/// Makes the line of a curve, and its dots, if it has any.
+fn plots_of(curve: Curve) -> Vec<Plot> {
+    let line = LinePlot::new()
+        .with_data(curve.points.clone())
+        .with_color(curve.colour)
+        .with_stroke_width(curve.width);
+    let line = match curve.dash {
+        "" => line,
+        dash => line.with_line_style(LineStyle::Custom(dash.to_string())),
+    };
+    let legend = !curve.legend.is_empty();
+    let line = if legend { line.with_legend(&curve.legend) } else { line };
+    let mut plots = vec![Plot::from(line)];
+    if curve.dots {
+        let points = ScatterPlot::new().with_data::<f64, f64, CurvePoints>(curve.points);
+        plots.push(points.with_size(4.0).with_color(curve.colour).into());
+    }
+    plots
 }
 
 /// Draws the history of one probe, computed and, where known, exact.
@@ -123,20 +176,22 @@ fn of_probe(scene: &Scene, probe: &Probe, history: &Table) -> (Vec<Curve>, Axes)
         points: t.iter().zip(y).map(|(t, y)| (t * per_t, y * per_y)).collect(),
         colour,
         width,
+        dash: "",
+        dots: false,
         legend: legend.to_string(),
     };
     let mut curves = Vec::new();
     if !exact.is_empty() {
-        curves.push(curve(&exact, EXACT, 4.0, "exact"));
+        curves.push(curve(&exact, EXACT, 5.0, "exact"));
     }
-    curves.push(curve(&computed, COLOURS[0], 1.4, "computed"));
+    curves.push(curve(&computed, COLOURS[0], 1.6, "computed"));
 
     let (name, unit) = probe.quantity.name_unit();
     let at: Vec<String> =
         probe.position.iter().zip(&scene.body.origin).map(|(x, o)| format!("{}", x + o)).collect();
     let cells: Vec<String> = scene.grid.cells.iter().map(usize::to_string).collect();
     let axes = Axes::new(
-        format!("{}: {}, {} cells", scene.title, probe.name, cells.join(" × ")),
+        format!("{}, {} cells", scene.title, cells.join(" × ")),
         format!("time t [{t_prefix}s]"),
         format!("{name} nearest to {} m [{y_prefix}{unit}]", at.join(", ")),
         false,
@@ -144,15 +199,31 @@ fn of_probe(scene: &Scene, probe: &Probe, history: &Table) -> (Vec<Curve>, Axes)
     (curves, axes)
 }
 
-/// Draws curves with names, each in a colour of its own.
+/// Draws curves with names, each in a colour of its own and with dashes of its own.
 pub fn curves(lists: &[(impl AsRef<str>, CurvePoints)], axes: &Axes) -> String {
     let curves = lists.iter().enumerate().map(|(n, (name, points))| Curve {
         points: points.clone(),
         colour: COLOURS[n % COLOURS.len()],
         width: 2.0,
-        legend: name.as_ref().to_string(),
+        dash: DASHES[n % DASHES.len()],
+        dots: points.len() <= FEW_POINTS,
+        legend: in_words(name.as_ref()),
     });
     draw(curves.collect(), axes)
+}
+
+/// Writes the keys of scenes and studies as the words that a legend has.
+fn in_words(name: &str) -> String {
+    const WORDS: [(&str, &str); 7] = [
+        ("bspline", "B-splines"),
+        ("ugimp", "uGIMP"),
+        ("lme", "local max-ent"),
+        ("mpm", "MPM"),
+        ("otm", "OTM"),
+        ("newmark", "Newmark"),
+        ("euler", "Euler"),
+    ];
+    WORDS.iter().fold(name.to_string(), |name, (key, word)| name.replace(key, word))
 }
 
 /// An effort is a point of a work-precision diagram: what it took, its relative error, and
@@ -163,7 +234,7 @@ pub struct Effort {
     pub group: String,
 }
 
-/// Draws error against work, both logarithmic: one colour for each group, the Pareto front
+/// Draws error against work, both logarithmic: one colour and marker for each group, the Pareto front
 /// as a line, failed runs as crosses above all others.
 pub fn work_precision(
     title: &str,
@@ -176,27 +247,29 @@ pub fn work_precision(
         let line = LinePlot::new().with_data(front.clone()).with_color("#000000");
         plots.push(Plot::from(line.with_stroke_width(1.5).with_legend("nobody is better")));
     }
-    let scatter = |points: CurvePoints, colour| {
+    let scatter = |points: CurvePoints, colour, marker| {
         ScatterPlot::new()
             .with_data::<f64, f64, CurvePoints>(points)
-            .with_size(3.5)
+            .with_size(4.5)
             .with_color(colour)
+            .with_marker(marker)
     };
     for (n, (name, points)) in groups(efforts).into_iter().enumerate() {
         if !points.is_empty() {
-            plots.push(scatter(points, COLOURS[n % COLOURS.len()]).with_legend(name).into());
+            let (colour, marker) = (COLOURS[n % COLOURS.len()], MARKERS[n % MARKERS.len()]);
+            plots.push(scatter(points, colour, marker).with_legend(in_words(name)).into());
         }
     }
     let worst = efforts.iter().filter_map(|effort| effort.error).fold(0.0, f64::max);
     let failed = efforts.iter().filter(|effort| effort.error.is_none());
     let failed: CurvePoints = failed.map(|effort| (effort.work, 2.0 * worst)).collect();
     if !failed.is_empty() && worst > 0.0 {
-        let crosses = scatter(failed, "#d00000").with_marker(MarkerShape::Cross);
+        let crosses = scatter(failed, "#d00000", MarkerShape::Cross);
         plots.push(crosses.with_legend("failed").into());
     }
     let axes = Axes::new(title, x_label, "relative error [–]", true);
     let layout = layout(&plots, SIZE, &axes);
-    own_ids(&render_to_svg(plots, layout))
+    rendered(plots, layout)
 }
 
 /// Lists the groups in order of first appearance, each with the points of its runs that did
@@ -233,14 +306,14 @@ pub fn particles(scene: &Scene, table: &Table, t: f64) -> String {
         "y [m]",
         false,
     );
-    let layout = layout(&plots, (640.0, 480.0), &axes)
-        .with_title_size(15)
+    let layout = layout(&plots, (640.0, 640.0), &axes)
+        .with_title_size(16)
         .with_equal_aspect()
         .with_x_axis_min(x_range.0)
         .with_x_axis_max(x_range.1)
         .with_y_axis_min(y_range.0)
         .with_y_axis_max(y_range.1);
-    own_ids(&render_to_svg(plots, layout))
+    rendered(plots, layout)
 }
 
 /// Gives |v| of every particle in a table (m/s).

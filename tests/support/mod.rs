@@ -6,6 +6,7 @@ pub mod kit;
 pub mod program;
 mod reference;
 mod scenes;
+pub mod sketch;
 
 pub use cases::*;
 pub use reference::*;
