@@ -65,7 +65,7 @@ fn symbols(model: &Model<1>, x: &[nalgebra::Vector1<f64>], theta: f64) -> [f64; 
 
 /// ω(θ)/(cθ): ω² = s K/M_L with the filter s = M/M_L of the trip to the particles and back,
 /// lumped, and K/M, consistent.
-fn predicted(basis: Sets, mass: &MassCase, theta: f64) -> f64 {
+pub(crate) fn predicted(basis: Sets, mass: &MassCase, theta: f64) -> f64 {
     let (model, state) = at_start::<1>(&row(basis, mass, 1));
     let [stiffness, filter] = symbols(&model, &state.particle.x[CELL], theta);
     let square = if *mass == LUMPED { stiffness * filter } else { stiffness / filter };

@@ -9,6 +9,7 @@ use lme_mpm::output::files::{self, prepare, write_all};
 use lme_mpm::scene::DYKA;
 use lme_mpm::scene::fault::{Fault, unprintable};
 use lme_mpm::setup;
+use lme_mpm::study::choice;
 use lme_mpm::study::configuration::Template;
 use lme_mpm::study::gamma::{self as gammas, AtGamma};
 use lme_mpm::study::map;
@@ -110,6 +111,24 @@ impl<Item, Row: Clone> ByRows<'_, Item, Row> {
         prepare(dir)?;
         Ok(Some(rows))
     }
+}
+
+/// Does `lme-mpm choose`.
+pub fn choose(arguments: &RowArguments, dir: &Path, jobs: u16) -> Result<(), Fault> {
+    let study = ByRows {
+        study: "choose",
+        scene: None,
+        items: &choice::choices()?,
+        name: choice::Choice::name,
+        columns: &choice::columns(),
+        digest: choice::digest()?,
+        compute: &choice::study,
+        table: choice::table,
+        read: &choice::read,
+    };
+    let Some(rows) = study.rows(arguments, dir, jobs)? else { return Ok(()) };
+    write_all(dir, &[("choose.csv".to_string(), choice::table(&rows)?)], &[])?;
+    print_report("", "", dir)
 }
 
 /// Does `lme-mpm gamma`.

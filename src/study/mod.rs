@@ -1,5 +1,6 @@
 //! A study computes one scene in many ways, and says what comes of it.
 
+pub mod choice;
 pub mod configuration;
 pub mod gamma;
 pub mod log;

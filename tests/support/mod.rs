@@ -3,6 +3,7 @@
 mod cases;
 pub mod figures;
 pub mod kit;
+pub mod lines;
 pub mod program;
 mod reference;
 mod scenes;
