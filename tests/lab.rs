@@ -102,6 +102,7 @@ fn cases() -> Vec<Case> {
             "axis-aligned" => &[FREE, "grid.cells=[3,3,3]", "time.end=0.004"],
             "vortex" => &[FREE, "grid.cells=[6,6]", "time.end=0.2"],
             "colliding-discs" => &[FREE, "grid.cells=[6,6]", "time.end=1"],
+            "spinning-bar" => &[FREE, "grid.cells=[8,2]", "time.end=1"],
             _ => &["grid.cells=20"],
         };
         cases.push((shipped.name.to_string(), shipped.text, owned(sets)));

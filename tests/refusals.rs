@@ -89,6 +89,7 @@ fn bad_ranges() {
         ("name", "\"velocity_end\"", "\"a/b\"", &["probe[0].name", "a/b"]),
         ("twice", "\"velocity_end\"", "\"stress_three_quarter\"", &["probe[1].name", "taken"]),
         ("column", "\"velocity_end\"", "\"momentum\"", &["probe[0].name", "taken"]),
+        ("spin", "velocity = 5", "velocity = 5\nspin = 1", &["initial_velocity[0].spin", "1 axis"]),
         ("nobody", "to = 0.1333", "to = 0.0999751", &["initial_velocity[0].to", "no particle"]),
         ("title", "The Dyka", "The\\u0001Dyka", &["title", "control character"]),
         (

@@ -66,7 +66,10 @@ impl Scales {
                 (arc * spec.frequency, arc)
             }
             Motion::Regions(regions) => {
-                let sizes = regions.iter().map(|region| size(&region.velocity));
+                let axes = 0..scene.dimension();
+                let sizes = regions.iter().map(|region| {
+                    size(&axes.clone().map(|d| region.fastest(d)).collect::<Vec<_>>())
+                });
                 let thrown = sizes.fold(0.0, f64::max);
                 return Scales {
                     velocity: thrown,

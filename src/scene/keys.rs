@@ -238,6 +238,13 @@ pub const KEYS: &[Key] = &[
     must("initial_velocity.to", PerAxis(any("m")), "The region's upper corner")
         .besides("above `from`, inside the body, with a particle in between"),
     must("initial_velocity.velocity", PerAxis(any("m/s")), "The velocity there"),
+    may(
+        "initial_velocity.spin",
+        One(any("rad/s")),
+        Without::Number(0.0),
+        "ω, how fast it turns about the region's middle besides",
+    )
+    .besides("in 2D"),
     may("vibration", Table, Without::Says("no mode"), "A natural mode: v = V φ(x)")
         .besides("in 1D, in place of initial_velocity, manufactured and vortex"),
     must("vibration.mode", One(MODE), "The number of the mode")

@@ -156,8 +156,14 @@ fn region(values: &Values, entry: &str, body: &Body) -> Result<Region, Box<Scene
     let from = values.axes_if(&format!("{entry}.from"), in_body)?;
     let above = |d: usize, x: f64| from[d] < x && x <= upper(d);
     let to = values.axes_if(&format!("{entry}.to"), above)?;
+    let spin = format!("{entry}.spin");
+    if values.has(&spin) && values.dimension() != 2 {
+        let problem = format!("the scene has {}", counted(values.dimension(), "axis"));
+        return Err(values.error(&spin, problem));
+    }
     Ok(Region {
         velocity: values.axes(&format!("{entry}.velocity"))?,
+        spin: values.number(&spin)?,
         from: (0..values.dimension()).map(|d| from[d] - body.origin[d]).collect(),
         to: (0..values.dimension())
             // The body's own corner, to the last bit, where the region ends with it.

@@ -179,15 +179,18 @@ pub struct TractionSpec {
     pub ramp: f64,
 }
 
-/// A region is a box [from, to) in the body's frame with an initial velocity.
+/// A region is a box [from, to) in the body's frame with an initial velocity, v + ω × r from its
+/// middle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
     /// Lower corner from the body's lower corner (m).
     pub from: Vec<f64>,
     /// Upper corner from the body's lower corner (m).
     pub to: Vec<f64>,
-    /// (m/s).
+    /// v (m/s).
     pub velocity: Vec<f64>,
+    /// ω in 2D (rad/s), 0 elsewhere.
+    pub spin: f64,
 }
 
 /// A probe follows a quantity at the particle nearest to a point.
@@ -222,6 +225,21 @@ impl Region {
     /// Tells whether a point is in the box [from, to), x from the body's lower corner.
     pub fn contains(&self, x: &[f64]) -> bool {
         (self.from.iter().zip(&self.to).zip(x)).all(|((from, to), x)| from <= x && x < to)
+    }
+
+    /// Gives component `d` of the velocity (m/s) at `x` (m), v_d + (ω × r)_d.
+    pub fn velocity_at(&self, x: &[f64], d: usize) -> f64 {
+        if self.spin == 0.0 {
+            return self.velocity[d];
+        }
+        let r = |d: usize| x[d] - 0.5 * (self.from[d] + self.to[d]);
+        self.velocity[d] + if d == 0 { -self.spin * r(1) } else { self.spin * r(0) }
+    }
+
+    /// Gives the largest size of component `d` of the velocity in the region (m/s).
+    pub fn fastest(&self, d: usize) -> f64 {
+        let across = if self.spin == 0.0 { 0.0 } else { self.to[1 - d] - self.from[1 - d] };
+        self.velocity[d].abs() + 0.5 * (self.spin * across).abs()
     }
 }
 

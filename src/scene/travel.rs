@@ -43,7 +43,7 @@ impl Scene {
     fn thrown(&self, d: usize) -> f64 {
         match &self.motion {
             Motion::Regions(regions) => {
-                regions.iter().map(|region| region.velocity[d].abs()).fold(0.0, f64::max)
+                regions.iter().map(|region| region.fastest(d)).fold(0.0, f64::max)
             }
             _ => 0.0,
         }

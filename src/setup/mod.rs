@@ -68,7 +68,9 @@ pub fn initial_state<const D: usize>(model: &Model<D>, scene: &Scene) -> State<D
         particle.v[p] = match (&scene.motion, &exact) {
             (Motion::Regions(regions), _) => {
                 let region = regions.iter().find(|r| r.contains(place.x.as_slice()));
-                region.map_or(SVector::zeros(), |r| SVector::from_fn(|d, _| r.velocity[d]))
+                region.map_or(SVector::zeros(), |r| {
+                    SVector::from_fn(|d, _| r.velocity_at(place.x.as_slice(), d))
+                })
             }
             (_, Ok(exact)) => exact.at(&place.x, 0.0).velocity,
             // A mode of more than one dimension is refused with the scene.

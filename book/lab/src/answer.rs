@@ -1,6 +1,5 @@
 //! An answer is a list of named parts.
 
-use lme_mpm::run::table::Table;
 use std::fmt::Display;
 
 /// An answer under construction.
@@ -26,13 +25,6 @@ impl Answer {
     pub fn numbers(&mut self, name: &str, numbers: impl IntoIterator<Item = f64>) {
         let bytes: Vec<u8> = numbers.into_iter().flat_map(f64::to_le_bytes).collect();
         self.part(name, &bytes);
-    }
-
-    /// Adds a table: the names of its columns, with line ends between them, and all its numbers,
-    /// row after row.
-    pub fn table(&mut self, name: &str, table: &Table) {
-        self.text(&format!("{name}.columns"), table.columns.join("\n"));
-        self.numbers(name, table.rows().flatten().copied());
     }
 
     /// Adds bytes.

@@ -1,8 +1,9 @@
 //! The solver for a page: scenes go in as text, numbers come out.
 //!
 //! Compiled to WebAssembly it has a bare C interface. A page asks for memory with [`alloc`],
-//! writes a request into it, and calls [`limit`], [`run`], [`history`] or [`shape`], which frees
-//! the request. A request is UTF-8: fields with a zero byte between them, first a number
+//! writes a request into it, and calls [`limit`], [`begin`], [`history`], [`exact`], [`moment`],
+//! [`point`], [`shape`] or [`steps`], which frees the request; a run that has begun is taken on by
+//! [`go_on`]. A request is UTF-8: fields with a zero byte between them, first a number
 //! whose meaning depends on the call, then the scene, then the `KEY=VALUE` of each `--set`.
 //!
 //! An answer begins with the number of the bytes that follow, a little-endian `u32`. They are
@@ -13,9 +14,18 @@
 
 mod answer;
 mod bar;
+mod live;
+mod steps;
 
 use answer::Answer;
 use bar::Request;
+use live::Live;
+use std::cell::RefCell;
+
+thread_local! {
+    /// The run that has begun; a page has one at a time.
+    static LIVE: RefCell<Option<Box<dyn Live>>> = const { RefCell::new(None) };
+}
 
 /// Lends `length` bytes; [`free`] takes them back.
 #[unsafe(no_mangle)]
@@ -58,15 +68,32 @@ pub unsafe extern "C" fn limit(start: *mut u8, length: usize) -> *mut u8 {
     unsafe { answer(start, length, bar::limit) }
 }
 
-/// Runs a scene and answers its history, its particles and the exact fields at as many moments
-/// as the request's number says at most, its summary, and its warnings.
+/// Begins a run and answers its sizes and limits; the request's number is the largest number of
+/// moments at which the particles are kept. A run that was under way is given up.
 ///
 /// # Safety
 ///
 /// As for [`free`].
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn run(start: *mut u8, length: usize) -> *mut u8 {
-    unsafe { answer(start, length, bar::run) }
+pub unsafe extern "C" fn begin(start: *mut u8, length: usize) -> *mut u8 {
+    LIVE.set(None);
+    let serve = |request: &Request| {
+        let (answer, live) = live::begin(request);
+        LIVE.set(live);
+        answer
+    };
+    unsafe { answer(start, length, serve) }
+}
+
+/// Takes the run that has begun on by so many time steps, and answers what is new: its history,
+/// its particles, and at the end its summary and its warnings.
+#[unsafe(no_mangle)]
+pub extern "C" fn go_on(steps: usize) -> *mut u8 {
+    let answer = LIVE.with_borrow_mut(|live| match live {
+        Some(live) => live.go_on(steps),
+        None => Answer::error("no run has begun"),
+    });
+    Box::into_raw(answer.into_bytes().into_boxed_slice()).cast()
 }
 
 /// Runs a scene and answers its history alone, every step that the scene records, as numbers and
@@ -77,7 +104,37 @@ pub unsafe extern "C" fn run(start: *mut u8, length: usize) -> *mut u8 {
 /// As for [`free`].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn history(start: *mut u8, length: usize) -> *mut u8 {
-    unsafe { answer(start, length, bar::history) }
+    unsafe { answer(start, length, live::history) }
+}
+
+/// Answers the exact fields of a bar at as many moments as the request's number says.
+///
+/// # Safety
+///
+/// As for [`free`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn exact(start: *mut u8, length: usize) -> *mut u8 {
+    unsafe { answer(start, length, bar::exact) }
+}
+
+/// Answers the exact fields of a bar at one moment (s), the request's number.
+///
+/// # Safety
+///
+/// As for [`free`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn moment(start: *mut u8, length: usize) -> *mut u8 {
+    unsafe { answer(start, length, bar::moment) }
+}
+
+/// Answers the exact history of one material point (m) of a bar, the request's number.
+///
+/// # Safety
+///
+/// As for [`free`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn point(start: *mut u8, length: usize) -> *mut u8 {
+    unsafe { answer(start, length, bar::point) }
 }
 
 /// Answers N_I(x) and dN_I/dx of a bar's nodes at as many equally spaced places of it as the
@@ -89,4 +146,15 @@ pub unsafe extern "C" fn history(start: *mut u8, length: usize) -> *mut u8 {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shape(start: *mut u8, length: usize) -> *mut u8 {
     unsafe { answer(start, length, bar::shape) }
+}
+
+/// Answers what particles and nodes of a bar are after each of the nine steps of one time step,
+/// whose number is the request's.
+///
+/// # Safety
+///
+/// As for [`free`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn steps(start: *mut u8, length: usize) -> *mut u8 {
+    unsafe { answer(start, length, steps::steps) }
 }

@@ -152,9 +152,12 @@ impl<const D: usize> ConsistentMass<D> {
         self.values.fill(0.0);
         for p in 0..particle.len() {
             look(&mut self.row, shape, p);
-            for I in &self.row {
-                for J in &self.row {
-                    let Some(k) = place(&self.pattern, I.I, J.I) else { return false };
+            for J in &self.row {
+                // Most nodes of a row stand in column J one after the other.
+                let mut next = self.pattern.major_offsets()[J.I];
+                for I in &self.row {
+                    let Some(k) = place_from(next, &self.pattern, I.I, J.I) else { return false };
+                    next = k + 1;
                     let m_IJ = I.N * particle.m[p] * J.N;
                     let share = I.N * particle.m[p] * self.light.diagonal_share(I, J);
                     self.values[k] += m_IJ;
@@ -258,6 +261,12 @@ impl<const D: usize> ConsistentMass<D> {
         self.cost.solves += D as u64;
     }
     // ANCHOR_END: solve
+}
+
+/// Finds the place of m_IJ among the values of a matrix with this pattern, which may be `next`.
+fn place_from(next: usize, pattern: &SparsityPattern, I: usize, J: usize) -> Option<usize> {
+    let is_next = next < pattern.major_offsets()[J + 1] && pattern.minor_indices()[next] == I;
+    if is_next { Some(next) } else { place(pattern, I, J) }
 }
 
 /// Finds the place of m_IJ among the values of a matrix with this pattern.
