@@ -34,7 +34,8 @@ pub const SHIPPED: &[Shipped] = shipped![
     "periodic-bar",
     "axis-aligned",
     "vortex",
-    "colliding-discs"
+    "colliding-discs",
+    "column"
 ];
 
 /// This is the bar of Dyka and Ingel.
