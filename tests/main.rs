@@ -22,6 +22,7 @@ mod gimp;
 mod guards;
 mod house;
 mod hull;
+mod implicit;
 mod integrators;
 mod lab;
 mod laws;

@@ -46,6 +46,8 @@ const TAKEN: &[&str] = &[
     "kinetic_energy",
     "strain_energy",
     "work",
+    "newton_iterations",
+    "newton_residual",
     "momentum",
     "momentum_x",
     "momentum_y",
