@@ -27,6 +27,7 @@ mod gimp;
 mod guards;
 mod house;
 mod hull;
+mod implicit;
 mod integrators;
 mod lab;
 mod laws;

@@ -94,6 +94,12 @@ pub enum Breakdown {
         shown(*part)
     )]
     Gained { particle: usize, share: f64, part: f64 },
+    #[error(
+        "no equilibrium of the nodes was found: after {iterations} iterations of Newton's method the \
+         residual is {residual:.1e} of the forces, and {what}; give the body more supports, more \
+         particles, or smaller steps by time.cfl or time.load_steps"
+    )]
+    NoEquilibrium { iterations: usize, residual: f64, what: &'static str },
     /// No step has failed: whoever listens to the run wants no more of it.
     #[error("the run was interrupted")]
     Interrupted,

@@ -20,9 +20,23 @@ impl Method {
             Method::Otm(_) => true,
         }
     }
+
+    /// Says what its scheme needs; OTM keeps everything at its nodes, balances the forces of k+1
+    /// and tabulates the places of k+1.
+    pub fn needs(&self) -> Needs {
+        match self {
+            Method::Mpm(integrator) => integrator.needs(),
+            Method::Otm(_) => {
+                Needs { balance_at_end: true, current_table: true, ..Needs::default() }
+            }
+        }
+    }
 }
 
-/// An integrator is the scheme that carries the material point method through time.
+// ANCHOR: integrators
+/// An integrator is the scheme that carries the material point method through time. What
+/// the rest of the program asks of one stands in [`Integrator::needs`]; its steps are a file of
+/// [`crate::method::time`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrator {
     /// The paper's explicit predictor-corrector, (27)-(29).
@@ -36,17 +50,50 @@ pub enum Integrator {
         /// ρ_b, the spectral radius at the bifurcation, 0 to 1.
         rho_b: f64,
     },
+    /// Newmark's method with β = 1/4 and γ = 1/2, whose balance holds at the end of the step.
+    ImplicitNewmark,
+    /// Equilibrium without inertia, under loads that grow in steps.
+    QuasiStatic,
+}
+
+/// Needs say what a scheme carries from step to step, and how it treats time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Particles keep an acceleration, a_p.
+    pub acceleration: bool,
+    /// The particles bring it to the nodes, a_I of k.
+    pub mapped_acceleration: bool,
+    /// The nodes have one of k+1 beside it.
+    pub next_acceleration: bool,
+    /// The forces are balanced at k+1, with the loads of that time; else at k.
+    pub balance_at_end: bool,
+    /// At the end of a step the table is that of the places where the particles stand then.
+    pub current_table: bool,
+    /// Displacements are solved for, so that no time step is too large to be stable, and the
+    /// strain is that of the map which moves the particles.
+    pub equilibrium: bool,
 }
 
 impl Integrator {
-    /// Says whether particles keep an acceleration from step to step.
-    pub fn carries_acceleration(&self) -> bool {
+    /// Says what the scheme needs, in one line for each.
+    pub fn needs(&self) -> Needs {
+        let none = Needs::default();
+        let with_a = Needs { acceleration: true, ..none };
+        let solved = Needs { balance_at_end: true, equilibrium: true, ..none };
         match self {
-            Integrator::Newmark(_) | Integrator::GeneralizedAlpha { .. } => true,
-            Integrator::ForwardEuler(_) | Integrator::CorrectedEuler => false,
+            Integrator::Newmark(_) => Needs { balance_at_end: true, current_table: true, ..with_a },
+            Integrator::ForwardEuler(_) | Integrator::CorrectedEuler => none,
+            Integrator::GeneralizedAlpha { .. } => {
+                Needs { mapped_acceleration: true, next_acceleration: true, ..with_a }
+            }
+            Integrator::ImplicitNewmark => {
+                Needs { acceleration: true, mapped_acceleration: true, ..solved }
+            }
+            Integrator::QuasiStatic => solved,
         }
     }
 }
+// ANCHOR_END: integrators
 
 /// A law gives the stress of the material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,8 @@
 //!
 //! What is made holds the count of what it took to make it: the table of shape functions its
 //! rows and pairs, the working space of local max-ent its exponentials, iterations and
-//! candidates, the mass matrix its factorisations and solutions, the nodes their loads.
+//! candidates, the mass matrix its factorisations and solutions, the nodes their loads, and the
+//! equations of an implicit step their iterations.
 //! [`super::model::State::cost`] is their sum.
 
 /// These counters say what a run has cost.
@@ -16,7 +17,7 @@ pub struct Cost {
     pub particle_node_pairs: u64,
     /// Calls of the exponential function.
     pub exponentials: u64,
-    /// Iterations of Newton's method.
+    /// Iterations of Newton's method for λ of local max-ent.
     pub newton_iterations: u64,
     /// Body forces evaluated: one per particle and force balance.
     pub body_forces: u64,
@@ -26,6 +27,10 @@ pub struct Cost {
     pub factorizations: u64,
     /// Solutions with it, one per component.
     pub solves: u64,
+    /// Iterations of Newton's method for the nodal displacements of an implicit step.
+    pub equilibrium_iterations: u64,
+    /// Factorisations of the tangent of these.
+    pub tangent_factorizations: u64,
     /// Nodes looked at in the search for neighbours.
     pub candidates: u64,
     /// Passes over all particles by the watch on the limit of Δt: tables, bounds, and
@@ -37,12 +42,12 @@ pub struct Cost {
 
 impl Cost {
     /// Lists every counter with its name, in the order of `cost.csv`.
-    pub fn named(mut self) -> [(&'static str, u64); 12] {
+    pub fn named(mut self) -> [(&'static str, u64); 14] {
         self.places().map(|(name, count)| (name, *count))
     }
 
     /// Lists every counter with its name, to be set.
-    pub fn places(&mut self) -> [(&'static str, &mut u64); 12] {
+    pub fn places(&mut self) -> [(&'static str, &mut u64); 14] {
         [
             ("steps", &mut self.steps),
             ("basis_evaluations", &mut self.basis_evaluations),
@@ -53,6 +58,8 @@ impl Cost {
             ("tractions", &mut self.tractions),
             ("factorizations", &mut self.factorizations),
             ("solves", &mut self.solves),
+            ("equilibrium_iterations", &mut self.equilibrium_iterations),
+            ("tangent_factorizations", &mut self.tangent_factorizations),
             ("candidates", &mut self.candidates),
             ("limit_applications", &mut self.limit_applications),
             ("bytes_per_particle", &mut self.bytes_per_particle),

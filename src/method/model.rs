@@ -1,7 +1,8 @@
 //! The model stays the same from step to step, and the state changes.
 
 use super::basis::{Basis, Scratch};
-use super::choice::{Integrator, Mass, Method};
+use super::choice::{Mass, Method};
+use super::continuum::equilibrium::Equilibrium;
 use super::continuum::law::Elastic;
 use super::continuum::loads::Loads;
 use super::continuum::mass::{ConsistentMass, MassMatrix};
@@ -50,11 +51,7 @@ impl<const D: usize> Model<D> {
         let of_multiplier =
             if self.basis.has_multiplier() { size_of::<Multiplier<D>>() } else { 0 };
         let of_basis = of_multiplier + if self.basis.has_stretch() { vector } else { 0 };
-        let of_method = match self.method {
-            Method::Mpm(integrator) if integrator.carries_acceleration() => vector, // a_p
-            Method::Mpm(_) => 0,
-            Method::Otm(_) => 0,
-        };
+        let of_method = if self.method.needs().acceleration { vector } else { 0 }; // a_p
         let of_map = if self.keeps_gradient() { matrix } else { 0 }; // G_p
         let of_law = if self.law.law.is_hyperelastic() {
             matrix // F_p
@@ -73,6 +70,8 @@ pub struct State<const D: usize> {
     pub node: Nodes<D>,
     pub shape: Shape<D>,
     pub mass: MassMatrix<D>,
+    /// The equations of the nodal displacements; of implicit schemes only.
+    pub equilibrium: Option<Box<Equilibrium<D>>>,
     /// What the basis keeps for its next table.
     pub scratch: Scratch<D>,
     /// Time steps taken.
@@ -91,16 +90,15 @@ impl<const D: usize> State<D> {
             Method::Otm(_) => x.len(),
         };
         let mut node = Nodes::blank(nodes);
-        match model.method {
-            Method::Mpm(integrator) if integrator.carries_acceleration() => {
-                particle.a = zeros(particles);
-                if let Integrator::GeneralizedAlpha { .. } = integrator {
-                    (node.a_last, node.a_next) = (zeros(nodes), zeros(nodes));
-                }
-            }
-            Method::Mpm(_) => {}
-            Method::Otm(_) => node.x = x,
+        if let Method::Otm(_) = model.method {
+            node.x = x;
         }
+        let needs = model.method.needs();
+        let kept = |needed: bool, count| if needed { zeros(count) } else { Vec::new() };
+        particle.a = kept(needs.acceleration, particles);
+        node.a_last = kept(needs.mapped_acceleration, nodes);
+        node.a_next = kept(needs.next_acceleration, nodes);
+        node.u = kept(needs.equilibrium, nodes);
         if model.keeps_gradient() {
             particle.G = vec![SMatrix::zeros(); particles];
         }
@@ -122,8 +120,9 @@ impl<const D: usize> State<D> {
                 MassMatrix::Consistent(Box::new(ConsistentMass::blank(nodes, &model.fixed)))
             }
         };
-        let shape = Shape::blank(particles);
-        State { particle, node, shape, mass, scratch: Scratch::default(), steps: 0 }
+        let equilibrium = needs.equilibrium.then(|| Box::new(Equilibrium::blank(nodes)));
+        let (shape, scratch) = (Shape::blank(particles), Scratch::default());
+        State { particle, node, shape, mass, equilibrium, scratch, steps: 0 }
     }
 
     /// Gives what carries the body's mass and motion: the particles of MPM, the nodes of OTM.
@@ -137,6 +136,7 @@ impl<const D: usize> State<D> {
     /// Sums up what the run has cost so far.
     pub fn cost(&self) -> Cost {
         let steps = Cost { steps: self.steps, ..Cost::default() };
-        steps + self.shape.cost + self.scratch.cost() + self.mass.cost() + self.node.cost
+        let solved = self.equilibrium.as_ref().map_or(Cost::default(), |system| system.cost);
+        steps + self.shape.cost + self.scratch.cost() + self.mass.cost() + self.node.cost + solved
     }
 }

@@ -67,7 +67,7 @@ pub fn trace_in<const D: usize>(
             0 => time::start(&mut state, &model, &mut after),
             _ => time::advance(&mut state, &model, moment.time, &mut after),
         };
-        if k == 0 && is_generalized_alpha(model.method) {
+        if k == 0 && starts_with_acceleration(model.method) {
             recorder.at(0, 0).symbol("a_p", &state, &model, 0.0);
         }
         // A number that is none stands in the trace before the step that stumbles over it.
@@ -91,8 +91,8 @@ impl TraceRecorder {
 }
 
 /// Tells whether the start has made an acceleration that no step of it shows.
-fn is_generalized_alpha(method: Method) -> bool {
-    matches!(method, Method::Mpm(Integrator::GeneralizedAlpha { .. }))
+fn starts_with_acceleration(method: Method) -> bool {
+    method.needs().mapped_acceleration
 }
 
 /// Lists the symbols that step `n` of a method makes, in the paper's order: one table, which is
@@ -156,6 +156,10 @@ fn made_by(method: Method, kinematics: Kinematics, n: usize) -> &'static [&'stat
                 MOVED_WITH_A,
                 STRAINED,
             ],
+            Integrator::ImplicitNewmark => {
+                &[NONE, TABLE, MAPPED, &["a_I", "v_I"], NONE, MOVED_WITH_A, MATERIAL]
+            }
+            Integrator::QuasiStatic => &[NONE, TABLE, &["m_I"], NONE, &["x_p"], MATERIAL],
         },
     };
     steps.get(n).copied().unwrap_or(NONE)

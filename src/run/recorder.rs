@@ -92,8 +92,8 @@ impl<'a, const D: usize> Recorder<'a, D> {
         Ok(())
     }
 
-    /// Writes a row: `step`, `t`, energies and, with loads, their work (J), momentum (kg
-    /// m/s), from 2D on angular momentum (kg m²/s), and each probe followed by its exact
+    /// Writes a row: `step`, `t`, energies and, with loads, their work (J), of an implicit step its
+    /// iterations and the residual that is left (–), momentum (kg m/s), from 2D on angular momentum (kg m²/s), and each probe followed by its exact
     /// value where the scene has an exact solution.
     fn row(
         &mut self,
@@ -110,6 +110,12 @@ impl<'a, const D: usize> Recorder<'a, D> {
         history.put(|| "strain_energy".into(), strain);
         if let Some(work) = work {
             history.put(|| "work".into(), work);
+        }
+        if let Some(system) = &state.equilibrium {
+            let residuals = &system.residuals;
+            let iterations = residuals.len().saturating_sub(1);
+            history.put(|| "newton_iterations".into(), iterations as f64);
+            history.put(|| "newton_residual".into(), residuals.last().copied().unwrap_or(0.0));
         }
         for (i, p_i) in measure::momentum(&carriers).iter().enumerate() {
             history.put(|| per_axis("momentum", D, i), *p_i);

@@ -46,6 +46,8 @@ const TAKEN: &[&str] = &[
     "kinetic_energy",
     "strain_energy",
     "work",
+    "newton_iterations",
+    "newton_residual",
     "momentum",
     "momentum_x",
     "momentum_y",
@@ -148,7 +150,14 @@ pub const KEYS: &[Key] = &[
     must("time", Table, "The scheme and its time step"),
     must(
         "time.integrator",
-        Choice(&["newmark", "forward-euler", "corrected-euler", "generalized-alpha"]),
+        Choice(&[
+            "newmark",
+            "forward-euler",
+            "corrected-euler",
+            "generalized-alpha",
+            "implicit-newmark",
+            "quasi-static",
+        ]),
         "The scheme that carries the particles through time",
     )
     .besides("with the method \"otm\" \"newmark\""),
@@ -171,38 +180,46 @@ pub const KEYS: &[Key] = &[
         "ρ_b, the spectral radius at the bifurcation",
     )
     .with("time.integrator", "generalized-alpha"),
+    must("time.load_steps", One(whole(1.0, Included(1e9))), "The steps in which the loads grow")
+        .with("time.integrator", "quasi-static"),
     may(
         "time.kinematics",
         Choice(&["as-printed", "consistent"]),
         Without::Word("as-printed"),
         "The strain as printed, or that of the map which moves the particles",
     )
-    .besides("not with the method \"otm\", whose strain is always that of the map"),
+    .besides(
+        "not with the method \"otm\" or an implicit integrator, whose strain is always that of the \
+         map",
+    ),
     may(
         "time.cfl",
         One(positive("")),
         Without::Says("time.fraction_of_critical bounds it"),
         "The largest c Δt / h",
     )
-    .besides("this key, time.fraction_of_critical, or both"),
+    .besides("this key, time.fraction_of_critical, or both; not with \"quasi-static\""),
     may(
         "time.fraction_of_critical",
         One(positive("")),
         Without::Says("time.cfl bounds it"),
         "The largest Δt, as a part of the limit that is predicted, over all offsets if particles move",
-    ),
+    )
+    .besides("not with an implicit integrator, which has no limit"),
     may(
         "time.allow_unstable",
         Flag,
         Without::Flag(false),
         "Run what the predicted limit says must blow up, without a watch",
-    ),
+    )
+    .besides("not with an implicit integrator"),
     may(
         "time.watch",
         One(between(Included(0.0), Included(1.0))),
         Without::Number(0.25),
         "The cells that particles may move until the limit of Δt is looked at again; 0 for no watch",
-    ),
+    )
+    .besides("not with an implicit integrator"),
     must("time.end", One(positive("s")), "The end of the run"),
     may(
         "check",
@@ -283,7 +300,8 @@ pub const KEYS: &[Key] = &[
     may("body_force", Table, Without::Says("none"), "A force per mass, everywhere the same")
         .besides("not with manufactured or vortex"),
     must("body_force.acceleration", PerAxis(any("m/s²")), "b, the acceleration"),
-    may("body_force.ramp", One(RAMP), Without::Number(0.0), "The time over which it grows"),
+    may("body_force.ramp", One(RAMP), Without::Number(0.0), "The time over which it grows")
+        .besides("not with \"quasi-static\", where loads grow until time.end"),
     may("traction", Table, Without::Says("none"), "Forces on the sides of the box")
         .besides("not with manufactured, vortex or balls"),
     may(
@@ -293,7 +311,8 @@ pub const KEYS: &[Key] = &[
         "The traction on this side",
     )
     .besides("0 where the side is fixed"),
-    may("traction.ramp", One(RAMP), Without::Number(0.0), "The time over which they grow"),
+    may("traction.ramp", One(RAMP), Without::Number(0.0), "The time over which they grow")
+        .besides("not with \"quasi-static\", where loads grow until time.end"),
     may("probe", List, Without::Says("none"), "Particles whose history is recorded"),
     must("probe.name", Name(TAKEN), "The name of its column and picture").besides("used once"),
     must("probe.quantity", Choice(&["velocity", "stress", "displacement"]), "What is recorded"),

@@ -12,14 +12,17 @@ const PER_PARTICLE_STEP: f64 = 300.0;
 /// by doubling.
 const PER_ENTRY: f64 = 32.0;
 
+/// An implicit step takes so many factorisations.
+const PER_STEP: f64 = 4.0;
+
 /// A budget is what a run may take. This one, without a look at the machine, is 16 GiB and 1e11
 /// particle-steps, which take some hours with the linear basis and a day with wide functions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Memory (bytes).
     pub memory: f64,
-    /// Particles times steps; with the consistent mass matrix a factorisation counts as a
-    /// particle for every 300 of its multiplications.
+    /// Particles times steps; a factorisation, of the consistent mass matrix or of a tangent, counts
+    /// as a particle for every 300 of its multiplications.
     pub work: f64,
 }
 
@@ -49,6 +52,11 @@ pub fn affordable(scene: &Scene, budget: &Budget) -> Result<(), Excess> {
         let problem = format!("this grid and basis need {gb:.1} GB of memory");
         let allowed = format!("a grid and basis that need at most {limit:.1} GB, which is there");
         return match factors > arrays {
+            true if is_implicit(scene) => too_much(
+                "time.integrator",
+                format!("{problem} with the factors of the tangent"),
+                format!("an explicit scheme, or {allowed}"),
+            ),
             true => too_much(
                 "mass",
                 format!("{problem} with the factors of the consistent matrix"),
@@ -84,9 +92,15 @@ pub fn affordable(scene: &Scene, budget: &Budget) -> Result<(), Excess> {
     Ok(())
 }
 
+/// Tells whether nodal displacements are solved for.
+fn is_implicit(scene: &Scene) -> bool {
+    scene.method.needs().equilibrium
+}
+
 /// Tells how many states a run holds: its own, and that of its watch.
 fn states(scene: &Scene) -> f64 {
-    if scene.time.watch == 0.0 || scene.time.allow_unstable { 1.0 } else { 2.0 }
+    let alone = scene.time.watch == 0.0 || scene.time.allow_unstable || is_implicit(scene);
+    if alone { 1.0 } else { 2.0 }
 }
 
 /// Estimates the memory for particles, nodes and their pairs (bytes).
@@ -99,11 +113,15 @@ fn arrays(scene: &Scene) -> f64 {
     states(scene) * (particles * (particle_bytes + table) + nodes * node_bytes)
 }
 
-/// Estimates the memory for the consistent mass matrix and its factors (bytes).
+/// Estimates the memory for the consistent mass matrix, the tangent of an implicit step, which
+/// couples all components, and their factors (bytes).
 fn factors(scene: &Scene) -> f64 {
     let (systems, entries) = (scene.mass_systems(), scene.mass_entries());
     let own = if systems > 0.0 { 24.0 } else { 0.0 };
-    states(scene) * (own * entries + systems * (PER_ENTRY * scene.factor_entries() + 8.0 * entries))
+    let of_mass = own * entries + systems * (PER_ENTRY * scene.factor_entries() + 8.0 * entries);
+    let d = scene.dimension() as f64;
+    let of_tangent = d * d * (PER_ENTRY * scene.factor_entries() + 40.0 * entries);
+    states(scene) * of_mass + if is_implicit(scene) { of_tangent } else { 0.0 }
 }
 
 /// Estimates the memory for frames and history (bytes).
@@ -121,6 +139,8 @@ fn recorded(scene: &Scene) -> f64 {
 fn work(scene: &Scene) -> f64 {
     let (particles, _, steps) = scene.sizes();
     let (nodes, band) = scene.band();
-    let factorisation = scene.mass_systems() * nodes * band * band / PER_PARTICLE_STEP;
+    let d = scene.dimension() as f64;
+    let tangents = if is_implicit(scene) { PER_STEP * d * d * d } else { 0.0 };
+    let factorisation = (scene.mass_systems() + tangents) * nodes * band * band / PER_PARTICLE_STEP;
     steps * (particles + factorisation)
 }

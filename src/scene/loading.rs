@@ -12,7 +12,7 @@ pub fn body_force(values: &Values) -> Result<Option<BodyForceSpec>, Box<SceneErr
     let key = "body_force.acceleration";
     let acceleration = values.axes(key)?;
     unforced(values, key)?;
-    Ok(Some(BodyForceSpec { acceleration, ramp: values.number("body_force.ramp")? }))
+    Ok(Some(BodyForceSpec { acceleration, ramp: ramp(values, "body_force.ramp")? }))
 }
 
 /// Reads the table `traction`.
@@ -41,7 +41,15 @@ pub fn traction(
         }
         sides[side.axis][side.upper] = t;
     }
-    Ok(Some(TractionSpec { sides, ramp: values.number("traction.ramp")? }))
+    Ok(Some(TractionSpec { sides, ramp: ramp(values, "traction.ramp")? }))
+}
+
+/// Reads the time over which a load grows (s); that of a quasi-static run grows to the end of it.
+fn ramp(values: &Values, key: &str) -> Result<f64, Box<SceneError>> {
+    match values.word("time.integrator")? {
+        "quasi-static" => values.number("time.end"),
+        _ => values.number(key),
+    }
 }
 
 /// Refuses a load beside the body force that keeps a chosen motion going.

@@ -94,10 +94,13 @@ pub struct GridSpec {
 /// This declares the time step and the end of the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Time {
-    /// The largest Courant number c Δt / h; infinite where only the next bounds it.
+    /// The largest Courant number c Δt / h; infinite where only the next bounds it, or load steps
+    /// are counted.
     pub cfl: f64,
     /// The largest Δt, as a part of the predicted limit.
     pub fraction_of_critical: Option<f64>,
+    /// The number of load steps of a quasi-static run, which has no time step.
+    pub load_steps: Option<usize>,
     /// Run even if the predicted limit of Δt says that it must blow up.
     pub allow_unstable: bool,
     /// Particles may move so many cells until the limit of Δt is looked at again; 0 for no

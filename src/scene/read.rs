@@ -6,7 +6,7 @@ use super::loading::{body_force, traction};
 use super::motion::motion;
 use super::parts::*;
 use super::probes::probes;
-use super::scheme::{basis, integrator, kinematics, nodal_mass, otm, time};
+use super::scheme::{basis, implicit, integrator, kinematics, nodal_mass, otm, time};
 use super::sizes::wave_speed;
 use super::source::Source;
 use super::values::{Values, counted};
@@ -68,6 +68,7 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
     };
     let boundary = boundary(values)?;
     let mut grid = grid(values, &boundary)?;
+    implicit(values, &boundary)?;
     if is_otm {
         otm(values)?;
         grid.beyond.fill([0, 0]);

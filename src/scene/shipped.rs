@@ -35,7 +35,8 @@ pub const SHIPPED: &[Shipped] = shipped![
     "axis-aligned",
     "vortex",
     "colliding-discs",
-    "spinning-bar"
+    "spinning-bar",
+    "column"
 ];
 
 /// This is the bar of Dyka and Ingel.

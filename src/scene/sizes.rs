@@ -17,12 +17,15 @@ impl Scene {
     }
 
     // ANCHOR: step_count
-    /// Gives N_t: as many equal steps as keep c Δt / h at or below `time.cfl`.
+    /// Gives N_t: the load steps of a quasi-static run, else as many equal steps as keep c Δt / h at or below `time.cfl`.
     ///
     /// A count within 1e-9 (relative) of a whole number is that number, so that
     /// an end given to ten digits does not cost a step; the Courant number may
     /// then exceed the bound by as much.
     pub fn step_count(&self) -> f64 {
+        if let Some(steps) = self.time.load_steps {
+            return steps as f64;
+        }
         let count = self.time.end * wave_speed(&self.body) / (self.time.cfl * self.spacing());
         let whole = libm::round(count);
         let close = (count - whole).abs() <= 1e-9 * whole;

@@ -1,5 +1,6 @@
 //! Says which exact solution a scene has.
 
+use crate::method::exact::column::Column;
 use crate::method::exact::forced::{Forced, Load};
 use crate::method::exact::manufactured::Manufactured;
 use crate::method::exact::mode::{Mode, Vibration};
@@ -18,6 +19,9 @@ pub fn exact<const D: usize>(scene: &Scene) -> Result<Exact<D>, Fault> {
     }
     if D > 1 {
         return Err(Fault::NoExact { why: "it has more than one dimension" });
+    }
+    if scene.time.load_steps.is_some() {
+        return column(scene).map(Exact::Static);
     }
     let ends = scene.ends(0);
     let (length, density, modulus) =
@@ -40,6 +44,15 @@ pub fn exact<const D: usize>(scene: &Scene) -> Result<Exact<D>, Fault> {
     }
     let forced = forced(scene, ends, c);
     Ok(Exact::Linear { thrown, vibration, forced })
+}
+
+/// Finds the equilibrium of a loaded bar.
+fn column(scene: &Scene) -> Result<Column, Fault> {
+    let why = "its bar is not held at just one end, or cannot bear its loads";
+    let (body, traction) = loads(scene);
+    let sizes = (scene.body.length[0], scene.body.density);
+    Column::new(sizes, scene.body.elastic(), scene.ends(0), body, traction)
+        .ok_or(Fault::NoExact { why })
 }
 
 /// Tells whether a scene has an exact solution, whatever its dimension.
@@ -84,17 +97,24 @@ fn forced(scene: &Scene, ends: [End; 2], c: f64) -> Option<Forced> {
     if scene.body_force.is_none() && scene.traction.is_none() {
         return None;
     }
-    let side = |upper: usize| {
-        let traction = scene.traction.as_ref();
-        traction.map_or(Load::default(), |t| Load { value: t.sides[0][upper][0], ramp: t.ramp })
-    };
-    let body = scene.body_force.as_ref();
+    let (body, traction) = loads(scene);
     Some(Forced {
         length: scene.body.length[0],
         c,
         Z: scene.body.density * c,
         ends,
-        body: body.map_or(Load::default(), |b| Load { value: b.acceleration[0], ramp: b.ramp }),
-        traction: [side(0), side(1)],
+        body,
+        traction,
     })
+}
+
+/// Gives the body force of a bar, and the tractions on its ends.
+fn loads(scene: &Scene) -> (Load, [Load; 2]) {
+    let side = |upper: usize| {
+        let traction = scene.traction.as_ref();
+        traction.map_or(Load::default(), |t| Load { value: t.sides[0][upper][0], ramp: t.ramp })
+    };
+    let body = scene.body_force.as_ref();
+    let body = body.map_or(Load::default(), |b| Load { value: b.acceleration[0], ramp: b.ramp });
+    (body, [side(0), side(1)])
 }

@@ -12,7 +12,9 @@ use crate::support::kit::{BAR, BLOCK, Base, STRIP, TWO_DISCS};
 use crate::support::*;
 use lme_mpm::method::choice::{Integrator, Method};
 use lme_mpm::method::model::{Model, State};
-use lme_mpm::method::time::{self, euler, generalized_alpha, newmark, otm};
+use lme_mpm::method::time::{
+    self, euler, generalized_alpha, implicit_newmark, newmark, otm, quasi_static,
+};
 use lme_mpm::port::check::{Tolerance, compare};
 use lme_mpm::port::trace::{self, Entry, TraceRecorder};
 use lme_mpm::scene::Scene;
@@ -72,6 +74,8 @@ fn right_step<const D: usize>(at: &At<D>, state: &mut State<D>) -> bool {
             Integrator::GeneralizedAlpha { rho_b } => {
                 generalized_alpha::step(n, state, model, rho_b, dt, t)
             }
+            Integrator::ImplicitNewmark => implicit_newmark::step(n, state, model, dt, t),
+            Integrator::QuasiStatic => quasi_static::step(n, state, model, t),
         },
     };
     done.is_ok()

@@ -13,6 +13,7 @@ pub const AXIS_ALIGNED: &str = include_str!("../../data/scenes/axis-aligned.toml
 pub const VORTEX: &str = include_str!("../../data/scenes/vortex.toml");
 pub const DYKA_OTM: &str = include_str!("../../data/scenes/dyka-otm.toml");
 pub const DISCS: &str = include_str!("../../data/scenes/colliding-discs.toml");
+pub const COLUMN: &str = include_str!("../../data/scenes/column.toml");
 
 /// L/c of the Dyka bar [s], from c = √(E/ρ).
 pub fn transit() -> f64 {

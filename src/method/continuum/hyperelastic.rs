@@ -56,7 +56,7 @@ impl Elastic {
 }
 
 /// Gives b − 1 = H + Hᵀ + H Hᵀ of H = F − 1 (–).
-fn left_cauchy_green<const D: usize>(H: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
+pub(super) fn left_cauchy_green<const D: usize>(H: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
     H + H.transpose() + H * H.transpose()
 }
 
@@ -70,7 +70,9 @@ fn logarithmic_strain<const D: usize>(H: &SMatrix<f64, D, D>) -> SMatrix<f64, D,
 
 /// Finds the principal values of a symmetric matrix, and their directions as columns, by
 /// Jacobi's rotations: each makes one entry beside the diagonal zero.
-fn principal<const D: usize>(mut A: SMatrix<f64, D, D>) -> (SVector<f64, D>, SMatrix<f64, D, D>) {
+pub(super) fn principal<const D: usize>(
+    mut A: SMatrix<f64, D, D>,
+) -> (SVector<f64, D>, SMatrix<f64, D, D>) {
     /// Entries shrink quadratically; 3 × 3 needs four or five sweeps.
     const SWEEPS: usize = 12;
     let mut Q = SMatrix::<f64, D, D>::identity();

@@ -3,15 +3,13 @@
 
 use super::light::{Light, Sight, look};
 use super::shape::Shape;
+use super::sparse::{coupled, factorise, place, place_from};
 use super::state::Particles;
 use crate::method::breakdown::Breakdown;
 use crate::method::cost::Cost;
 use nalgebra::{DVector, SVector};
-use nalgebra_sparse::factorization::{CscCholesky, CscSymbolicCholesky};
+use nalgebra_sparse::factorization::CscCholesky;
 use nalgebra_sparse::pattern::SparsityPattern;
-
-/// A pivot below this share of its diagonal entry counts as zero.
-const SINGULAR: f64 = 1e-12;
 
 /// A mass matrix gives the nodes their velocities and accelerations; there are two.
 #[derive(Clone, Debug)]
@@ -49,6 +47,17 @@ impl<const D: usize> MassMatrix<D> {
                 }
             }
             MassMatrix::Consistent(mass) => mass.solve(out, q, m),
+        }
+    }
+
+    /// Shows `each` the entries (I, J, m_IJ) (kg), column by column.
+    pub fn entries(&self, m: &[f64], mut each: impl FnMut(usize, usize, f64)) {
+        match self {
+            MassMatrix::Lumped => (0..m.len()).for_each(|I| each(I, I, m[I])),
+            MassMatrix::Consistent(mass) => {
+                let entries = mass.pattern.entries().zip(&mass.values);
+                entries.for_each(|((J, I), m_IJ)| each(I, J, *m_IJ));
+            }
         }
     }
 
@@ -177,34 +186,9 @@ impl<const D: usize> ConsistentMass<D> {
     /// Makes the pattern of this table of shape functions; the factors go with the
     /// old one.
     fn couple(&mut self, shape: &Shape<D>, nodes: usize) {
-        let mut coupled: Vec<Vec<usize>> = (0..nodes).map(|I| vec![I]).collect();
-        for (I, p, _, _) in shape.pairs() {
-            let list = &mut coupled[I];
-            for (J, _, _) in shape.of(p) {
-                if list.len() == list.capacity() {
-                    // So that it takes twice what the pattern does at most.
-                    list.sort_unstable();
-                    list.dedup();
-                    list.reserve_exact(list.len());
-                }
-                list.push(J);
-            }
-        }
-        let (mut offsets, mut indices) = (vec![0], Vec::new());
-        for list in &mut coupled {
-            list.sort_unstable();
-            list.dedup();
-            indices.append(list);
-            offsets.push(indices.len());
-        }
-        self.values = vec![0.0; indices.len()];
-        self.held = vec![0.0; indices.len()];
-        // Sorted and without doubles: this cannot fail.
-        if let Ok(pattern) =
-            SparsityPattern::try_from_offsets_and_indices(nodes, nodes, offsets, indices)
-        {
-            self.pattern = pattern;
-        }
+        self.pattern = coupled(shape, nodes);
+        self.values = vec![0.0; self.pattern.nnz()];
+        self.held = vec![0.0; self.pattern.nnz()];
         for system in &mut self.systems {
             system.factor = None;
         }
@@ -223,23 +207,8 @@ impl<const D: usize> ConsistentMass<D> {
                 self.held[k] = if alone(I) || alone(J) { single } else { self.values[k] };
             }
         }
-        let factor = match system.factor.take() {
-            Some(mut factor) => factor.refactor(&self.held).map(|()| factor),
-            None => {
-                let symbolic = CscSymbolicCholesky::factor(self.pattern.clone());
-                CscCholesky::factor_numerical(symbolic, &self.held)
-            }
-        }
-        .ok()?;
-        let factor = system.factor.insert(factor);
-        for J in 0..m.len() {
-            let entry = place(&self.pattern, J, J).map_or(0.0, |k| self.held[k]);
-            let pivot = factor.l().col(J).values()[0];
-            if pivot * pivot < SINGULAR * entry {
-                return None;
-            }
-        }
-        Some(())
+        system.factor = factorise(system.factor.take(), &self.pattern, &self.held);
+        system.factor.as_ref().map(|_| ())
     }
 
     // ANCHOR: solve
@@ -261,15 +230,4 @@ impl<const D: usize> ConsistentMass<D> {
         self.cost.solves += D as u64;
     }
     // ANCHOR_END: solve
-}
-
-/// Finds the place of m_IJ among the values of a matrix with this pattern, which may be `next`.
-fn place_from(next: usize, pattern: &SparsityPattern, I: usize, J: usize) -> Option<usize> {
-    let is_next = next < pattern.major_offsets()[J + 1] && pattern.minor_indices()[next] == I;
-    if is_next { Some(next) } else { place(pattern, I, J) }
-}
-
-/// Finds the place of m_IJ among the values of a matrix with this pattern.
-fn place(pattern: &SparsityPattern, I: usize, J: usize) -> Option<usize> {
-    pattern.lane(J).binary_search(&I).ok().map(|n| pattern.major_offsets()[J] + n)
 }

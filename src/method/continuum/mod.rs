@@ -2,11 +2,14 @@
 //! the pointwise laws, the table of shape functions, and the sums that move quantities between
 //! the two.
 
+pub mod equilibrium;
 pub mod hyperelastic;
 pub mod law;
 pub mod light;
 pub mod loads;
 pub mod mass;
+pub mod moduli;
 pub mod shape;
+pub mod sparse;
 pub mod state;
 pub mod sums;

@@ -29,7 +29,7 @@ pub struct Particles<const D: usize> {
     pub d_eps: Vec<SMatrix<f64, D, D>>,
     /// λ_p of the last table; of local max-ent only.
     pub lambda: Vec<Multiplier<D>>,
-    /// a_p, acceleration (m/s²); of Newmark's method and generalized-α only.
+    /// a_p, acceleration (m/s²); of Newmark's methods and generalized-α only.
     pub a: Vec<SVector<f64, D>>,
     /// G_p, the gradient of a step's displacement (–); where more is needed than Δε_p.
     pub G: Vec<SMatrix<f64, D, D>>,
@@ -59,10 +59,13 @@ pub struct Nodes<const D: usize> {
     pub f: Vec<SVector<f64, D>>,
     /// a_I, acceleration (m/s²): f_I / m_I, or what solves (12) with the consistent mass matrix.
     pub a: Vec<SVector<f64, D>>,
-    /// a_I of k, brought by the particles (m/s²); of generalized-α only.
+    /// a_I of k, brought by the particles (m/s²); of generalized-α and the implicit Newmark method
+    /// only.
     pub a_last: Vec<SVector<f64, D>>,
     /// a_I of k+1 (m/s²); of generalized-α only.
     pub a_next: Vec<SVector<f64, D>>,
+    /// u_I, displacement in the step (m); of implicit schemes only, which solve for it.
+    pub u: Vec<SVector<f64, D>>,
     /// x_I, position (m); of OTM only, whose nodes move.
     pub x: Vec<SVector<f64, D>>,
     /// The loads that were summed up here.
@@ -185,6 +188,7 @@ impl<const D: usize> Nodes<D> {
             a: vec![SVector::zeros(); n],
             a_last: Vec::new(),
             a_next: Vec::new(),
+            u: Vec::new(),
             x: Vec::new(),
             cost: Cost::default(),
         }

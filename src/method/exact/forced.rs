@@ -36,7 +36,7 @@ impl Load {
     }
 
     /// Gives the load at t ≥ 0.
-    fn now(&self, t: f64) -> f64 {
+    pub fn now(&self, t: f64) -> f64 {
         self.value * ramp(t, self.ramp)
     }
     // ANCHOR_END: ramp_integrals

@@ -1,5 +1,6 @@
 //! Each exact solution has a file of its own.
 
+pub mod column;
 mod fields;
 pub mod forced;
 pub mod manufactured;
@@ -9,6 +10,7 @@ pub mod vortex;
 
 pub use fields::{Fields, FieldsIn};
 
+use column::Column;
 use forced::Forced;
 use manufactured::Manufactured;
 use mode::Vibration;
@@ -22,6 +24,8 @@ pub enum Exact<const D: usize> {
     /// The elastic bar: thrown in patches or in a mode, with loads or without.
     /// Small strains, so the parts add up. D = 1.
     Linear { thrown: Bar, vibration: Option<Vibration>, forced: Option<Forced> },
+    /// A bar in equilibrium at finite strain. D = 1.
+    Static(Column),
     /// A motion at finite strain, kept going by a body force.
     Moved(Moved<D>),
 }
@@ -41,6 +45,7 @@ impl<const D: usize> Exact<D> {
         match self {
             Exact::Linear { thrown, vibration: None, forced: None } => thrown.latest(),
             Exact::Linear { thrown, .. } => 1e4 * thrown.length / thrown.c(),
+            Exact::Static(_) => f64::INFINITY,
             Exact::Moved(Moved::Manufactured(solution)) => 1e4 / solution.omega,
             Exact::Moved(Moved::Vortex(solution)) => 1e4 / solution.omega,
         }
@@ -60,6 +65,7 @@ impl<const D: usize> Exact<D> {
                 }
                 fields.into()
             }
+            Exact::Static(column) => column.at(X[0], t).into(),
             Exact::Moved(moved) => moved.at(X, t),
         }
     }

@@ -2,10 +2,13 @@
 //! step.
 
 pub mod deformation;
+pub mod equilibrium;
 pub mod euler;
 pub mod generalized_alpha;
+pub mod implicit_newmark;
 pub mod newmark;
 pub mod otm;
+pub mod quasi_static;
 pub mod steps;
 
 use super::breakdown::Breakdown;
@@ -15,7 +18,7 @@ use super::model::{Model, State};
 // ANCHOR: advance
 /// Prepares what a scheme needs at k = 0: with Newmark's method nodal values, by one time step
 /// with Δt = 0, in which nothing moves; with generalized-α the acceleration of loads that act
-/// at once; with OTM the nodes' masses, velocities and forces; with the others nothing.
+/// at once, with the implicit Newmark method that of all forces; with OTM the nodes' masses, velocities and forces; with the others nothing.
 ///
 /// `after` sees the state after each step of Newmark's, and after OTM's start as step 0.
 pub fn start<const D: usize>(
@@ -34,7 +37,8 @@ pub fn start<const D: usize>(
                 generalized_alpha::start(state, model)?;
             }
             Integrator::GeneralizedAlpha { .. } => {}
-            Integrator::ForwardEuler(_) | Integrator::CorrectedEuler => {}
+            Integrator::ImplicitNewmark => implicit_newmark::start(state, model)?,
+            Integrator::ForwardEuler(_) | Integrator::CorrectedEuler | Integrator::QuasiStatic => {}
         },
     }
     steps::finite(&state.particle)
@@ -88,6 +92,8 @@ fn one_step<const D: usize>(
             Integrator::GeneralizedAlpha { rho_b } => {
                 generalized_alpha::step(n, state, model, rho_b, dt, loads_at)
             }
+            Integrator::ImplicitNewmark => implicit_newmark::step(n, state, model, dt, loads_at),
+            Integrator::QuasiStatic => quasi_static::step(n, state, model, loads_at),
         },
     }
 }
@@ -101,20 +107,14 @@ fn step_count(method: Method) -> usize {
             Integrator::Newmark(_) => newmark::STEPS,
             Integrator::ForwardEuler(_) | Integrator::CorrectedEuler => euler::STEPS,
             Integrator::GeneralizedAlpha { .. } => generalized_alpha::STEPS,
+            Integrator::ImplicitNewmark => implicit_newmark::STEPS,
+            Integrator::QuasiStatic => quasi_static::STEPS,
         },
     }
 }
 
-/// Says when the loads of a time step are taken (s), which ends at `t`: Newmark and OTM balance
-/// the forces of k+1, the others those of k.
+/// Says when the loads of a time step are taken (s), which ends at `t`: with the forces that the
+/// method balances, those of k+1 or of k.
 pub fn time_of_loads(method: Method, dt: f64, t: f64) -> f64 {
-    match method {
-        Method::Otm(_) => t,
-        Method::Mpm(integrator) => match integrator {
-            Integrator::Newmark(_) => t,
-            Integrator::ForwardEuler(_)
-            | Integrator::CorrectedEuler
-            | Integrator::GeneralizedAlpha { .. } => t - dt,
-        },
-    }
+    if method.needs().balance_at_end { t } else { t - dt }
 }

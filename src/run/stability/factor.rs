@@ -23,6 +23,8 @@ pub enum OfScheme {
     Last,
     /// 2p/l.
     Alpha(Parameters),
+    /// 0: no time step is too large.
+    Unlimited,
 }
 
 impl OfScheme {
@@ -33,6 +35,7 @@ impl OfScheme {
         };
         match integrator {
             Integrator::GeneralizedAlpha { rho_b } => OfScheme::Alpha(Parameters::new(rho_b)),
+            Integrator::ImplicitNewmark | Integrator::QuasiStatic => OfScheme::Unlimited,
             // The velocity that moves the particles strains them, before it is filtered.
             _ if kinematics == Kinematics::Consistent => OfScheme::Last,
             Integrator::Newmark(_) | Integrator::CorrectedEuler => OfScheme::Filtered,
@@ -45,7 +48,7 @@ impl OfScheme {
     /// |∇N|²/N is not bounded.
     pub fn fears_light_nodes(&self, basis: &Basis) -> bool {
         match self {
-            OfScheme::One | OfScheme::Filtered => false,
+            OfScheme::One | OfScheme::Filtered | OfScheme::Unlimited => false,
             OfScheme::Last | OfScheme::Alpha(_) => *basis == Basis::Linear,
         }
     }
@@ -54,6 +57,7 @@ impl OfScheme {
     pub fn at(&self, s: f64) -> f64 {
         match self {
             OfScheme::One => 1.0,
+            OfScheme::Unlimited => 0.0,
             OfScheme::Filtered => s,
             OfScheme::Last => 2.0 - s,
             OfScheme::Alpha(Parameters { alpha_m, beta, gamma }) => {

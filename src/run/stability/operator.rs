@@ -134,6 +134,7 @@ impl<'a, const D: usize> Operator<'a, D> {
     fn scheme(&mut self, u: &Field<D>) -> Field<D> {
         match self.factor {
             OfScheme::One => u.clone(),
+            OfScheme::Unlimited => vec![SVector::zeros(); u.len()],
             OfScheme::Filtered => self.filter(u),
             OfScheme::Last => {
                 let filtered = self.filter(u);
@@ -176,6 +177,7 @@ impl<'a, const D: usize> Operator<'a, D> {
         let factor = match self.factor {
             OfScheme::One | OfScheme::Filtered => 1.0,
             OfScheme::Last => 2.0,
+            OfScheme::Unlimited => 0.0,
             OfScheme::Alpha(_) => return None,
         };
         if self.model.mass == Mass::Consistent || self.out.contains(&true) {

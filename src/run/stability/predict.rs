@@ -67,10 +67,14 @@ impl Critical {
     }
 }
 
-/// Predicts the limit of Δt of a scene; where its particles move, over all offsets.
+/// Predicts the limit of Δt of a scene; where its particles move, over all offsets. Infinite for
+/// implicit schemes.
 ///
 /// Errors: [`Breakdown`] of the first table, or of a singular mass matrix.
 pub fn critical(scene: &Scene) -> Result<Critical, Breakdown> {
+    if scene.method.needs().equilibrium {
+        return Ok(Critical { start: f64::INFINITY, over_offsets: None });
+    }
     let start = predicted(scene, 0.0)?;
     let moves = !scene.method.moves_nodes() && scene.travel() > MOVES;
     let over_offsets = if moves { Some(over_offsets(scene)?.min(start)) } else { None };

@@ -6,7 +6,7 @@ use super::noise::noise;
 use super::operator::{Operator, Stress};
 use super::predict::{self, Critical};
 use crate::method::breakdown::{Breakdown, Moment};
-use crate::method::choice::{Integrator, Method};
+use crate::method::choice::Method;
 use crate::method::continuum::law::symmetric_part;
 use crate::method::continuum::state::Particles;
 use crate::method::grid::odometer;
@@ -76,7 +76,8 @@ pub struct Watch<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Watch<'a, D> {
-    /// Makes the watch of a run that begins with `state`; `None` for a scene that wants none.
+    /// Makes the watch of a run that begins with `state`; `None` for a scene that wants none, and
+    /// for a scheme that has no limit.
     /// The predicted `limit` is found when first asked for, unless it is known.
     pub fn new(
         scene: &'a Scene,
@@ -84,7 +85,8 @@ impl<'a, const D: usize> Watch<'a, D> {
         state: &State<D>,
         limit: Option<Critical>,
     ) -> Option<Self> {
-        if scene.time.watch == 0.0 || scene.time.allow_unstable {
+        let unlimited = model.method.needs().equilibrium;
+        if scene.time.watch == 0.0 || scene.time.allow_unstable || unlimited {
             return None;
         }
         Some(Watch {
@@ -183,7 +185,7 @@ impl<'a, const D: usize> Watch<'a, D> {
     /// that of Newmark's method, which is current.
     fn touches(&self, state: &State<D>) -> bool {
         let grid = &self.model.grid;
-        let current = matches!(self.model.method, Method::Mpm(Integrator::Newmark(_)));
+        let current = self.model.method.needs().current_table;
         let share = if current { LIGHT } else { 0.0 };
         let bare = |p: usize| {
             let Some(at) = grid.locate(&state.particle.x[p]) else { return false };
@@ -224,11 +226,9 @@ impl<'a, const D: usize> Watch<'a, D> {
         own.particle.x.copy_from_slice(&state.particle.x);
         own.particle.rho.copy_from_slice(&state.particle.rho);
         own.particle.stretch.copy_from_slice(&state.particle.stretch);
-        match model.method {
-            Method::Otm(_) | Method::Mpm(Integrator::Newmark(_)) => {
-                own.shape.clone_from(&state.shape)
-            }
-            Method::Mpm(_) => {
+        match model.method.needs().current_table {
+            true => own.shape.clone_from(&state.shape),
+            false => {
                 own.particle.lambda.clone_from(&state.particle.lambda);
                 steps::tabulate(&mut own.shape, &mut own.scratch, &mut own.particle, model)?;
             }
