@@ -233,7 +233,7 @@ fn symbols_are_in_the_code() {
     let words: std::collections::BTreeSet<&str> =
         code.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
     for row in records("data/symbols.csv") {
-        assert_eq!(row.len(), 6, "{row:?}");
+        assert_eq!(row.len(), 8, "{row:?}");
         assert!(row.iter().all(|cell| !cell.is_empty()), "{row:?}");
         assert!(words.contains(row[1].as_str()), "{} is not in the code", row[1]);
     }
