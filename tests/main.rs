@@ -16,6 +16,7 @@ mod exact;
 mod extremes;
 mod extremes_of_scenes;
 mod finite;
+mod first_use;
 mod fuzz;
 mod gate;
 mod gimp;
