@@ -275,16 +275,19 @@ fn first_use_of_symbols() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Every shipped scene is in the glossary, and named in no chapter before its own.
+/// Every scene that a chapter names is in the glossary, and named in no chapter before its own.
 #[test]
 fn first_use_of_scenes() {
     let scenes = rows(&read("book/src/glossary.md"), "Scenes");
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
+    let book = book();
     for file in fs::read_dir(folder).unwrap() {
         let name = file.unwrap().file_name().to_string_lossy().replace(".toml", "");
-        assert!(scenes.iter().any(|scene| scene.forms[0] == name), "no scene `{name}`");
+        let named = book.iter().any(|(_, text)| names_scene(text, &name));
+        let listed = scenes.iter().any(|scene| scene.forms[0] == name);
+        assert!(listed || !named, "no scene `{name}` in the glossary");
     }
-    let wrong = of_scenes(&book(), &scenes);
+    let wrong = of_scenes(&book, &scenes);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
