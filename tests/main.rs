@@ -59,6 +59,7 @@ mod steps;
 mod studies;
 mod support;
 mod table;
+mod teaching;
 mod terminal;
 mod trace;
 mod verdicts;
