@@ -566,11 +566,73 @@ fn commands_of_the_book_cut_no_exponent() {
     assert!(!cuts_an_exponent("a,0.70628,1", "a,0.70"));
 }
 
+/// Name and caption of every figure and table of a chapter, and every table that is typed without
+/// a caption above it.
+fn captions(chapter: &str, text: &str) -> (Vec<(String, String)>, Vec<String>) {
+    let (mut found, mut bare) = (Vec::new(), Vec::new());
+    for rest in text.split("{{#").skip(1) {
+        let directive = rest.split("}}").next().unwrap();
+        let (word, argument) = directive.split_once(' ').unwrap_or((directive, ""));
+        if ["figure", "table", "caption"].contains(&word) {
+            let (name, caption) = argument.split_once(" | ").unwrap_or((argument, ""));
+            found.push((name.trim().to_string(), caption.trim().to_string()));
+        }
+    }
+    let text = text.split("```").step_by(2).collect::<String>();
+    let lines: Vec<&str> = text.lines().collect();
+    for (n, line) in lines.iter().enumerate().filter(|(_, line)| line.starts_with("|-")) {
+        let above = n.checked_sub(3).map_or("", |n| lines[n]);
+        if !above.ends_with("}}") {
+            bare.push(format!("{chapter}: {}", lines[n.saturating_sub(1)].trim_end_matches(line)));
+        }
+    }
+    (found, bare)
+}
+
+/// Every figure and table has a caption, and what is referred to is there. The numbers are given
+/// by the build.
+#[test]
+fn figures_and_tables_have_captions() {
+    let (mut names, mut without) = (Vec::new(), Vec::new());
+    for (chapter, text) in chapters() {
+        let (found, bare) = captions(&chapter, &text);
+        without.extend(bare);
+        for (name, caption) in found {
+            if caption.len() < 10 {
+                without.push(format!("{chapter}: {name}"));
+            }
+            let stands_twice = names.contains(&name) && !name.contains('/');
+            assert!(!stands_twice, "{chapter}: {name} is another table's name");
+            names.push(name);
+        }
+    }
+    assert!(without.is_empty(), "without a caption:\n{}", without.join("\n"));
+    assert!(names.len() > 80, "{}", names.len());
+    for (chapter, text) in chapters() {
+        for rest in text.split("{{#see ").skip(1) {
+            let name = rest.split("}}").next().unwrap().trim();
+            assert!(names.iter().any(|known| known == name), "{chapter}: no caption of {name}");
+        }
+    }
+}
+
+/// A table without a caption is seen, and one with a caption, or in code, is not taken for one.
+#[test]
+fn figures_and_tables_without_captions_are_seen() {
+    let bare = |text: &str| captions("x.md", text).1.len();
+    assert_eq!(bare("Text.\n\n| a |\n|---|\n| 1 |\n"), 1);
+    assert_eq!(bare("{{#caption x | What it shows.}}\n\n| a |\n|---|\n| 1 |\n"), 0);
+    assert_eq!(bare("```text\n\n| a |\n|---|\n```\n"), 0);
+}
+
 /// mdBook's own includes build without a word where file or anchor are missing, so no chapter
 /// may have one, and `cargo book` does not load what would fill them in.
 #[test]
 fn chapters_know_their_directives() {
-    let known = ["code", "side", "beside", "end", "pin", "file", "table", "value", "figure"];
+    let known = [
+        "code", "side", "beside", "end", "pin", "file", "table", "caption", "value", "figure",
+        "see",
+    ];
     for (chapter, text) in chapters() {
         for rest in text.split("{{#").skip(1) {
             let word = rest.split([' ', '}']).next().unwrap();

@@ -1,10 +1,10 @@
 //! After the build: what a reader would stumble over.
 //!
 //! No leftover directive, no empty code block, no raw TeX, no link or picture
-//! that leads nowhere, nothing fetched from outside.
+//! that leads nowhere, nothing fetched from outside, no figure or table without its number.
 
 use anyhow::{Context, Result, bail};
-use scraper::{Html, Node, Selector};
+use scraper::{ElementRef, Html, Node, Selector};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::fs;
@@ -58,6 +58,7 @@ pub fn pages(html: &Path) -> Result<Counted> {
             counted.listings += 1;
         }
         counted.equations += document.select(&maths).count();
+        faults.extend(unnamed(&document)?.into_iter().map(|fault| format!("{name}: {fault}")));
         let mut page = Page { ids: BTreeSet::new(), links: Vec::new() };
         for element in document.select(&any) {
             let value = element.value();
@@ -93,10 +94,68 @@ pub fn pages(html: &Path) -> Result<Counted> {
             }
         }
     }
+    faults.extend(searched(html)?);
     if !faults.is_empty() {
         bail!("{} faults in the pages:\n  {}", faults.len(), faults.join("\n  "));
     }
     Ok(counted)
+}
+
+/// Figures and tables without number and caption, pictures without words, and numbers of
+/// equations that lead to another one.
+fn unnamed(document: &Html) -> Result<Vec<String>> {
+    let select = |what: &str| Selector::parse(what).map_err(|error| anyhow::anyhow!("{error}"));
+    let mut faults = Vec::new();
+    let text = |element: ElementRef| element.text().collect::<String>();
+    let captions: BTreeMap<&str, String> = document
+        .select(&select(".caption, figure:has(> figcaption)")?)
+        .filter_map(|caption| Some((caption.value().id()?, text(caption))))
+        .collect();
+    let is_numbered = |id: &str| {
+        let words = captions.get(id).map_or("", |words| words.trim());
+        words.starts_with("Table ") || words.starts_with("Figure ")
+    };
+    for table in document.select(&select("main .table-wrapper")?) {
+        if !table.attr("aria-labelledby").is_some_and(is_numbered) {
+            let words: String = text(table).split_whitespace().collect::<Vec<_>>().join(" ");
+            let words: String = words.chars().take(40).collect();
+            faults.push(format!("a table without a caption: {words}"));
+        }
+    }
+    for figure in document.select(&select("main figure[id]")?) {
+        if !figure.value().id().is_some_and(is_numbered) {
+            faults.push("a figure without a caption".to_string());
+        }
+    }
+    for picture in document.select(&select("main img")?) {
+        if picture.attr("alt").is_none_or(|words| words.len() < 10) {
+            faults.push(format!("{:?} is not said in words", picture.attr("src")));
+        }
+    }
+    for link in document.select(&select("a.eq")?) {
+        let number = text(link).replace(['(', ')'], "");
+        let place = format!("#eq-{number}");
+        if !link.attr("href").is_some_and(|link| link.ends_with(&place)) {
+            faults.push(format!("({number}) leads to another equation"));
+        }
+    }
+    Ok(faults)
+}
+
+/// What the search would show as an excerpt holds neither TeX nor directives.
+fn searched(html: &Path) -> Result<Vec<String>> {
+    let mut faults = Vec::new();
+    for entry in fs::read_dir(html)? {
+        let path = entry?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if name.starts_with("searchindex") {
+            let index = fs::read_to_string(&path)?;
+            let left = ["{{#", "\\frac", "\\tag", "\\mathbf", "\\Delta"];
+            let left = left.iter().filter(|word| index.contains(*word));
+            faults.extend(left.map(|word| format!("{name}: `{word}` is left in what is searched")));
+        }
+    }
+    Ok(faults)
 }
 
 /// The text that a reader sees: no scripts, no styles, no TeX source that

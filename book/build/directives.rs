@@ -227,13 +227,27 @@ fn rows(file: &str) -> Result<Vec<Vec<String>>> {
 
 fn table(file: &str) -> Result<String> {
     let rows = rows(file)?;
-    // A cell is text: its bars end no column, its angles open no tag, its stars are stars.
-    let cell = |text: &String| text.replace('<', "&lt;").replace('|', "\\|").replace('*', "\\*");
+    // A cell is text: its bars end no column, its angles open no tag, its stars are stars, and
+    // its brackets hold no number of an equation.
+    let cell = |text: &String| {
+        let text = text.replace('<', "&lt;").replace('|', "\\|");
+        text.replace('*', "\\*").replace('(', "&#40;")
+    };
     let line =
         |row: &[String]| format!("| {} |\n", row.iter().map(cell).collect::<Vec<_>>().join(" | "));
     let words: Vec<String> = rows[0].iter().map(|name| name.replace('_', " ")).collect();
     let mut out = line(&words);
-    out.push_str(&line(&vec!["---".to_string(); words.len()]));
+    // Numbers stand below each other; the first column names the row.
+    let is_number = |text: &str| !text.contains(|c: char| c.is_alphabetic() && c != 'e');
+    let rules: Vec<String> = (0..words.len())
+        .map(|n| {
+            match n > 0 && rows[1..].iter().all(|row| row.get(n).is_none_or(|t| is_number(t))) {
+                true => "---:".to_string(),
+                false => "---".to_string(),
+            }
+        })
+        .collect();
+    out.push_str(&format!("| {} |\n", rules.join(" | ")));
     rows[1..].iter().for_each(|row| out.push_str(&line(row)));
     Ok(out)
 }

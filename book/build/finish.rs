@@ -20,6 +20,8 @@ pub fn pages(html: &Path, formulas: &[Formula]) -> Result<()> {
             "404.html" => not_found(&page)?,
             _ => page.clone(),
         };
+        // What opens the table of contents is a button, and says so.
+        let mended = mended.replace("<label id", "<label role=\"button\" tabindex=\"0\" id");
         let mended = tables(&maths::fill(&mended, formulas).with_context(|| name.to_string())?);
         if mended != page {
             fs::write(&file, mended).with_context(|| format!("cannot write {name}"))?;

@@ -18,8 +18,9 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use mdbook_driver::MDBook;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{Command, ExitCode, Stdio};
 
 /// The top of the repository.
 pub fn root() -> PathBuf {
@@ -43,10 +44,11 @@ fn main() -> ExitCode {
 }
 
 fn build(arguments: &[String]) -> Result<()> {
-    let open = match arguments {
-        [] => false,
-        [flag] if flag == "--open" => true,
-        _ => bail!("usage: cargo book [--open]"),
+    let (open, pdf) = match arguments {
+        [] => (false, false),
+        [flag] if flag == "--open" => (true, false),
+        [flag] if flag == "--pdf" => (false, true),
+        _ => bail!("usage: cargo book [--open | --pdf]"),
     };
     let book_dir = Path::new(env!("CARGO_MANIFEST_DIR"));
     let preprocessor = directives::Directives::new()?;
@@ -72,7 +74,36 @@ fn build(arguments: &[String]) -> Result<()> {
     if open {
         opener::open(&first)?;
     }
+    if pdf {
+        println!("for print it is at {}", print(&html)?.display());
+    }
     Ok(())
+}
+
+/// Prints the page that holds all chapters, by the Chromium that CHROMIUM names, or by the first
+/// that is installed.
+fn print(html: &Path) -> Result<PathBuf> {
+    let page = html.join("print.html").canonicalize()?;
+    let to = page.with_file_name("lme-mpm.pdf");
+    let named = std::env::var("CHROMIUM");
+    let names = match &named {
+        Ok(name) => vec![name.as_str()],
+        Err(_) => vec!["chromium", "chromium-browser", "google-chrome"],
+    };
+    for name in &names {
+        let mut command = Command::new(name);
+        command.args(["--headless", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer"]);
+        command.arg("--generate-pdf-document-outline");
+        command.arg(format!("--print-to-pdf={}", to.display()));
+        command.arg(format!("file://{}", page.display())).stderr(Stdio::null());
+        match command.status() {
+            Ok(status) if status.success() && to.is_file() => return Ok(to),
+            Ok(status) => bail!("{name} has printed nothing ({status})"),
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            Err(error) => return Err(error).with_context(|| format!("cannot start {name}")),
+        }
+    }
+    bail!("--pdf needs a Chromium: there is no {}; CHROMIUM may name one", names.join(", no "))
 }
 
 /// Puts the page's solver and its scenes into `to` as a script, because a page that is opened from

@@ -44,12 +44,16 @@ pub fn render(
             Event::Text(words) if in_link == 0 && words.contains('(') => {
                 linked(&text[range.clone()], &place)
             }
-            // A heading is a link to itself, and code has no equations.
-            Event::Start(Tag::Link { .. } | Tag::Heading { .. } | Tag::CodeBlock(_)) => {
+            // A heading is a link to itself; code and the heads of tables have no equations.
+            Event::Start(
+                Tag::Link { .. } | Tag::Heading { .. } | Tag::CodeBlock(_) | Tag::TableHead,
+            ) => {
                 in_link += 1;
                 continue;
             }
-            Event::End(TagEnd::Link | TagEnd::Heading(_) | TagEnd::CodeBlock) => {
+            Event::End(
+                TagEnd::Link | TagEnd::Heading(_) | TagEnd::CodeBlock | TagEnd::TableHead,
+            ) => {
                 in_link -= 1;
                 continue;
             }

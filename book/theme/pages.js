@@ -21,9 +21,8 @@ function mark() {
     }
   }
 }
-mark();
-addEventListener("resize", mark);
-addEventListener("load", mark);
+// The table of contents, the fonts and the window change the width.
+new ResizeObserver(mark).observe(document.querySelector(".content main"));
 document.addEventListener("toggle", mark, true);
 
 // The number of an equation shows it. All equations stand in one file, which is loaded when the
