@@ -405,16 +405,26 @@ const TAUGHT: [&str; 20] = [
     "scene-reference",
 ];
 
-/// Each of them begins with its two lines, and its exercises are numbered, have a grade, and a
-/// folded answer each.
+/// Each of them begins with its two lines, and needs no later chapter but to look things up; its
+/// exercises are numbered, have a grade, and a folded answer each.
 #[test]
 fn chapters_teach() {
+    let summary = read("book/src/SUMMARY.md");
+    let place = |chapter: &str| summary.find(&format!("({}.md)", chapter.trim_end_matches(".md")));
     let mut exercises = 0;
     for chapter in TAUGHT {
         let text = read(&format!("book/src/{chapter}.md"));
         let top = text.split("\n## ").next().unwrap();
-        for line in ["\n**What it needs.** ", "\n**What it gives.** "] {
-            assert!(top.contains(line), "{chapter}: no {line}");
+        assert!(top.contains("\n**What it gives.** "), "{chapter}: does not say what it gives");
+        let needs = top.split_once("\n**What it needs.** ");
+        let (_, needs) = needs.unwrap_or_else(|| panic!("{chapter}: does not say what it needs"));
+        let needs = needs.split("\n\n").next().unwrap();
+        for link in needs.split("](").skip(1).map(|rest| rest.split([')', '#']).next().unwrap()) {
+            let looked_up = ["grid.md", "equations.md"].contains(&link);
+            assert!(
+                place(link) < place(chapter) || looked_up,
+                "{chapter} needs {link}, a later one"
+            );
         }
         let (_, end) = text.split_once("\n## Exercises\n").unwrap();
         let end = end.split("\n### ").next().unwrap();
