@@ -202,7 +202,7 @@ fn snapshots_have_tests() {
 /// name, the long one's, words that a row must have (rows with any of these), and columns.
 type Short = (&'static str, &'static str, &'static [&'static str], &'static [usize]);
 
-const SHORT: [Short; 10] = [
+const SHORT: [Short; 12] = [
     (
         "orders_in_time",
         "finite__orders_in_time",
@@ -261,6 +261,22 @@ const SHORT: [Short; 10] = [
     ),
     ("verdicts", "verdicts__shipped", &["dyka,", "gravity,", "manufactured,"], &[0, 1, 2, 3, 4]),
     ("gamma", "gamma__study", &[",0.8,", ",1.8,", ",4,", ",50,"], &[0, 1, 2, 3, 4, 7, 11]),
+    ("time_step", "data/instructions/time-step.csv", &[",3,"], &[0, 2, 3, 4, 5]),
+    (
+        "seeded",
+        "port__seeded",
+        &[
+            "modulus E for",
+            "step 8 as printed",
+            "roller forgotten",
+            "engineering shear",
+            "∂N/∂y with 1/h_x",
+            "nodes counted from 1",
+            "printed with six",
+            "cut off after",
+        ],
+        &[0, 1, 2, 3, 4, 5],
+    ),
     ("vibrating_bar", "published__vibrating_bar", &[",20,", ",80,"], &[0, 1, 2, 3, 4, 5]),
 ];
 
@@ -268,8 +284,9 @@ const SHORT: [Short; 10] = [
 #[test]
 fn short_tables_are_parts_of_long_ones() {
     for (short, long, words, columns) in SHORT {
-        let text = read(&format!("snapshots/{long}.snap"));
-        let body = text.splitn(3, "---\n").nth(2).unwrap();
+        let file = if long.contains('/') { long.into() } else { format!("snapshots/{long}.snap") };
+        let text = read(&file);
+        let body = text.splitn(3, "---\n").nth(2).unwrap_or(&text);
         let mut lines = csv::ReaderBuilder::new().has_headers(false).from_reader(body.as_bytes());
         let mut table = csv::Writer::from_writer(Vec::new());
         for (n, row) in lines.records().map(Result::unwrap).enumerate() {
@@ -393,28 +410,39 @@ const TAUGHT: [&str; 20] = [
     "scene-reference",
 ];
 
-/// Each of them begins with its two lines, and its exercises are numbered, have a grade, and a
-/// folded answer each.
+/// Each of them begins with its two lines, and needs no later chapter but to look things up; its
+/// exercises are numbered, have a grade, and a folded answer each.
 #[test]
 fn chapters_teach() {
+    let summary = read("book/src/SUMMARY.md");
+    let place = |chapter: &str| summary.find(&format!("({}.md)", chapter.trim_end_matches(".md")));
     let mut exercises = 0;
     for chapter in TAUGHT {
         let text = read(&format!("book/src/{chapter}.md"));
         let top = text.split("\n## ").next().unwrap();
-        for line in ["\n**What it needs.** ", "\n**What it gives.** "] {
-            assert!(top.contains(line), "{chapter}: no {line}");
+        assert!(top.contains("\n**What it gives.** "), "{chapter}: does not say what it gives");
+        let needs = top.split_once("\n**What it needs.** ");
+        let (_, needs) = needs.unwrap_or_else(|| panic!("{chapter}: does not say what it needs"));
+        let needs = needs.split("\n\n").next().unwrap();
+        for link in needs.split("](").skip(1).map(|rest| rest.split([')', '#']).next().unwrap()) {
+            let looked_up = ["grid.md", "equations.md"].contains(&link);
+            assert!(
+                place(link) < place(chapter) || looked_up,
+                "{chapter} needs {link}, a later one"
+            );
         }
         let (_, end) = text.split_once("\n## Exercises\n").unwrap();
         let end = end.split("\n### ").next().unwrap();
-        let tasks: Vec<&str> =
-            end.split("\n**").skip(1).filter(|task| task.contains('●')).collect();
+        let (tasks, rest) = end.rsplit_once("</details>").unwrap();
+        assert!(rest.trim().is_empty(), "{chapter}: something after the exercises");
+        let tasks: Vec<&str> = tasks.split("</details>").collect();
         assert!((3..=6).contains(&tasks.len()), "{chapter}: {} exercises", tasks.len());
         for (n, task) in (1..).zip(&tasks) {
-            let head = task.split("**").next().unwrap();
-            let graded = [" ● (", " ●● (", " ●●● ("].iter().any(|grade| head.contains(grade));
-            assert!(head.starts_with(&format!("{n} ")) && graded, "{chapter}: `{head}`");
-            let answer = task.contains("<details>\n<summary>Answer</summary>\n\n**Answer.** ");
-            assert!(answer && task.trim_end().ends_with("</details>"), "{chapter}: {n}");
+            let head = task.trim_start().split("\n\n").next().unwrap();
+            let grade = [" ● (", " ●● (", " ●●● ("].iter().any(|grade| head.contains(grade));
+            assert!(head.starts_with(&format!("**{n} ")) && grade, "{chapter}: `{head}`");
+            let fold = "<details>\n<summary>Answer</summary>\n\n**Answer.** ";
+            assert!(task.contains(fold), "{chapter}: {n}");
         }
         exercises += tasks.len();
     }
