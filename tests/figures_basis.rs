@@ -173,7 +173,7 @@ fn crossing(basis: &Basis) -> Crossing {
     let sides = force(&[3.0 - 1e-10, 3.0 + 1e-10]);
     let far = |a: usize, b: usize| (all[a] - all[b]).abs() > 0.1;
     let last = x.len() - 1;
-    let kept = |n: &usize| n % 10 == 0 || *n == last || far(*n, n - 1) || far(*n, n + 1);
+    let kept = |n: &usize| n.is_multiple_of(10) || *n == last || far(*n, n - 1) || far(*n, n + 1);
     Crossing {
         jump: sides[1] - sides[0],
         most: largest(steps),
