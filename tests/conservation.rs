@@ -229,8 +229,8 @@ fn conservation_of_angular_momentum() {
         }
     }
     approve("conservation__angular_momentum", &table);
-    let title = "A spinning disc on ten cells, Newmark's method";
-    let axes = Axes::new(title, "time t [s]", "angular momentum / at the start [–]", false);
+    let title = "Angular momentum of a spinning disc";
+    let axes = Axes::new(title, "time t [s]", "share that is left [–]", false);
     approve_picture("conservation__spin", figure::curves(&histories, &axes));
 }
 

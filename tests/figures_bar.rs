@@ -224,13 +224,13 @@ fn fill(v: f64, sigma: f64) -> &'static str {
 /// the left, where R^II does.
 fn fronts(sketch: &mut Sketch, frame: &Frame) {
     for to_the_right in [true, false] {
-        let (mut x, mut t, mut right) = (0.75, 0.0, to_the_right);
+        let (mut x, mut t, mut right): (f64, f64, bool) = (0.75, 0.0, to_the_right);
         while t < 4.0 {
             let (end, pen) = match right {
                 true => (1.0, TO_THE_RIGHT),
                 false => (0.0, TO_THE_LEFT),
             };
-            let step = f64::min((end - x as f64).abs(), 4.0 - t);
+            let step = f64::min((end - x).abs(), 4.0 - t);
             let to = x + step * (end - x).signum();
             frame.curve(sketch, &[(x, t), (to, t + step)], pen);
             (x, t, right) = (to, t + step, !right);

@@ -47,7 +47,7 @@ fn functions(basis: &Basis) -> Vec<Function> {
     let (grid, margin) = body(basis);
     // Beside the nodes, not on them: there ∇N may have two values.
     let (low, high) = (margin + 1e-9, CELLS as f64 - margin - 1e-9);
-    let mut x: Vec<f64> = (0..=240).map(|n| low + (high - low) * f64::from(n) / 240.0).collect();
+    let mut x: Vec<f64> = (0..=120).map(|n| low + (high - low) * f64::from(n) / 120.0).collect();
     x.extend((1..CELLS).flat_map(|I| [I as f64 - 1e-9, I as f64 + 1e-9]));
     x.sort_by(f64::total_cmp);
     x.retain(|x| x.fract() != 0.0);
@@ -173,7 +173,7 @@ fn crossing(basis: &Basis) -> Crossing {
     let sides = force(&[3.0 - 1e-10, 3.0 + 1e-10]);
     let far = |a: usize, b: usize| (all[a] - all[b]).abs() > 0.1;
     let last = x.len() - 1;
-    let kept = |n: &usize| n % 10 == 0 || *n == last || far(*n, n - 1) || far(*n, n + 1);
+    let kept = |n: &usize| n.is_multiple_of(10) || *n == last || far(*n, n - 1) || far(*n, n + 1);
     Crossing {
         jump: sides[1] - sides[0],
         most: largest(steps),

@@ -156,7 +156,7 @@ fn middle(gamma: f64, x: f64, y: f64) -> [f64; 2] {
 /// The contours of a hill around its top: `of` falls along each ray from there, so that
 /// each level is one closed line. The right half is the mirror image of the left one.
 fn contours(top: (f64, f64), levels: &[f64], of: impl Fn(f64, f64) -> f64) -> Vec<Vec<(f64, f64)>> {
-    const RAYS: i32 = 36;
+    const RAYS: i32 = 24;
     let mut contours = vec![Vec::new(); levels.len()];
     for n in 0..=RAYS {
         let angle = std::f64::consts::PI * f64::from(n) / f64::from(RAYS);

@@ -249,29 +249,30 @@ fn shelves(files: &[String]) -> Vec<String> {
 /// The rooms as floors of a house; a line on the right leads from each room down to those
 /// that it uses.
 fn picture(rooms: &[Room]) -> String {
-    const WIDTH: usize = 600;
-    const LINE: usize = 17;
+    const WIDTH: usize = 480;
+    const LINE: usize = 19;
     const COLOURS: [&str; 8] =
         ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#882255", "#44aa99"];
     let (mut body, mut y, mut floors) = (String::new(), 10, Vec::new());
     for Room { name, says, files, .. } in rooms {
-        let lines = shelves(files);
-        let height = 34 + LINE * (lines.len() + 1);
+        let says: Vec<String> = wrapped(&says.replace('&', "&amp;").replace('<', "&lt;"));
+        let lines: Vec<String> = shelves(files).iter().flat_map(|line| wrapped(line)).collect();
+        let height = 34 + LINE * (says.len() + lines.len());
         write!(
             body,
             "<rect x=\"10\" y=\"{y}\" width=\"{WIDTH}\" height=\"{height}\" rx=\"4\" fill=\"#f7f7f7\" \
-             stroke=\"#444444\"/>\n<text x=\"22\" y=\"{}\" font-size=\"15\" font-weight=\"bold\">{name}\
-             </text>\n<text x=\"22\" y=\"{}\" font-size=\"12\">{}</text>\n",
-            y + 21,
-            y + 21 + LINE,
-            says.replace('&', "&amp;").replace('<', "&lt;")
+             stroke=\"#444444\"/>\n<text x=\"22\" y=\"{}\" font-size=\"17\" font-weight=\"bold\">{name}\
+             </text>\n",
+            y + 21
         )
         .unwrap();
-        for (n, line) in lines.iter().enumerate() {
-            let at = y + 21 + LINE * (n + 2);
+        let says = says.iter().map(|line| (line, "#000000"));
+        let all = says.chain(lines.iter().map(|line| (line, "#555555")));
+        for (n, (line, colour)) in all.enumerate() {
+            let at = y + 21 + LINE * (n + 1);
             writeln!(
                 body,
-                "<text x=\"22\" y=\"{at}\" font-size=\"11\" fill=\"#555555\">{line}</text>"
+                "<text x=\"22\" y=\"{at}\" font-size=\"14.5\" fill=\"{colour}\">{line}</text>"
             )
             .unwrap();
         }
@@ -281,22 +282,39 @@ fn picture(rooms: &[Room]) -> String {
     for (from, room) in rooms.iter().enumerate() {
         for to in room.uses.iter().map(|name| ROOMS.iter().position(|room| room == name).unwrap()) {
             let (a, b) = (floors[from], floors[to] - 8 + 2 * from);
-            let (edge, out) = (WIDTH + 10, WIDTH + 40 + 26 * (to - from));
+            let (edge, out) = (WIDTH + 10, WIDTH + 36 + 20 * (to - from));
             writeln!(
                 body,
                 "<path d=\"M {edge} {a} C {out} {a} {out} {b} {edge} {b}\" fill=\"none\" \
-                 stroke=\"{}\" stroke-width=\"1.4\" marker-end=\"url(#tip)\"/>",
-                COLOURS[from]
+                 stroke=\"{}\" stroke-width=\"1.6\"{} marker-end=\"url(#tip)\"/>",
+                COLOURS[from],
+                [" ", " stroke-dasharray=\"7 3\"", " stroke-dasharray=\"2 3\""][from % 3]
+                    .trim_end()
             )
             .unwrap();
         }
     }
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 840 {y}\" font-family=\"sans-serif\">\n\
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"640\" height=\"{y}\" viewBox=\"0 0 640 {y}\" font-family=\"sans-serif\">\n\
          <defs><marker id=\"tip\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"7\" \
          markerHeight=\"7\" orient=\"auto\"><path d=\"M 0 0 L 8 4 L 0 8 z\" fill=\"#444444\"/></marker>\
-         </defs>\n<rect width=\"840\" height=\"{y}\" fill=\"#ffffff\"/>\n{body}</svg>\n"
+         </defs>\n<rect width=\"640\" height=\"{y}\" fill=\"#ffffff\"/>\n{body}</svg>\n"
     )
+}
+
+/// A line in pieces of at most 58 letters, cut between words.
+fn wrapped(line: &str) -> Vec<String> {
+    let mut pieces = vec![String::new()];
+    for word in line.split(' ') {
+        let last = pieces.last_mut().unwrap();
+        if last.chars().count() + word.chars().count() > 57 {
+            pieces.push(word.to_string());
+        } else {
+            *last += if last.is_empty() { "" } else { " " };
+            *last += word;
+        }
+    }
+    pieces
 }
 
 /// One name, one thing: no two types of the program are called the same.

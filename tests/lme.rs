@@ -192,6 +192,9 @@ fn lme_plain_newton_fails() {
         (format!("γ = {gamma}"), points.take(10).collect())
     };
     let lists: Vec<_> = [1.8, 4.0, 8.0, 12.0, 20.0].into_iter().map(curve).collect();
+    let steps: Vec<usize> =
+        lists.iter().map(|(_, points): &(String, Vec<(f64, f64)>)| points.len()).collect();
+    assert!(steps[..4].is_sorted_by(|a, b| a < b) && steps[4] == 3, "{steps:?}");
     let svg = figure::curves(
         &lists,
         &Axes::new(

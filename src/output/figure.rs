@@ -9,7 +9,7 @@ use kuva::render::render::Primitive;
 use std::sync::Arc;
 
 /// A picture has this width and height (px): its words are legible in a column of 500 px too.
-const SIZE: (f64, f64) = (640.0, 420.0);
+const SIZE: (f64, f64) = (626.0, 420.0);
 
 /// The exact curve stands behind in grey; the colours are safe for the colour-blind (Okabe &
 /// Ito 2008).
@@ -97,9 +97,11 @@ pub fn draw(curves: Vec<Curve>, axes: &Axes) -> String {
     rendered(plots, layout)
 }
 
-/// Renders a picture; the keys of lines in its legend are long enough to show their dashes.
+/// Renders a picture; the keys of lines in its legend are long enough to show their dashes, and
+/// the sheet is wide and high enough for the last number of an axis and the last line of a legend.
 fn rendered(plots: Vec<Plot>, layout: Layout) -> String {
     const KEY: f64 = 42.0;
+    const EDGE: f64 = 14.0;
     let mut scene = render_multiple(plots, layout);
     for element in &mut scene.elements {
         if let Primitive::Line { x1, x2, y1, y2, stroke_width, .. } = element
@@ -107,9 +109,14 @@ fn rendered(plots: Vec<Plot>, layout: Layout) -> String {
             && *x2 - *x1 < KEY
             && *stroke_width == 2.0
         {
+            *x2 = *x1 + 12.0;
             *x1 = *x2 - KEY;
         }
+        if let Primitive::Text { y, .. } = element {
+            scene.height = scene.height.max(*y + EDGE);
+        }
     }
+    scene.width += EDGE;
     own_ids(&SvgBackend.render_scene(&scene))
 }
 
@@ -385,7 +392,7 @@ fn prefix(largest: f64) -> (f64, &'static str) {
 /// that would show nothing.
 fn tick(x: f64) -> String {
     let size = libm::fabs(x);
-    if x != 0.0 && !(1e-4..1e7).contains(&size) {
+    if x != 0.0 && !(1e-4..1e6).contains(&size) {
         return format!("{x:.1e}").replace(".0e", "e");
     }
     let rounded = format!("{x:.6}");

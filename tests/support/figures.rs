@@ -48,8 +48,19 @@ pub struct Dispersion {
     pub measured: CurvePoints,
 }
 
-/// Draws the speed of waves against their θ/π: solid lumped, dashed consistent, measured points;
-/// large words, for a narrow page.
+/// Each basis has its marker.
+const MARKERS: [MarkerShape; 7] = [
+    MarkerShape::Circle,
+    MarkerShape::Plus,
+    MarkerShape::Triangle,
+    MarkerShape::Diamond,
+    MarkerShape::TriangleDown,
+    MarkerShape::Square,
+    MarkerShape::Cross,
+];
+
+/// Draws the speed of waves against their θ/π: solid lumped, dashed consistent, measured points
+/// with a marker for each basis; large words, for a narrow page.
 pub fn dispersion(bases: &[Dispersion]) -> String {
     let mut plots: Vec<Plot> = Vec::new();
     for (n, basis) in bases.iter().enumerate() {
@@ -58,10 +69,11 @@ pub fn dispersion(bases: &[Dispersion]) -> String {
             // The first curve lies under one that is the same.
             line.with_stroke_width(if n == 0 { 6.0 } else { 2.0 })
         };
-        plots.push(Plot::from(line(&basis.lumped).with_legend(&basis.name)));
+        plots.push(Plot::from(line(&basis.lumped)));
         plots.push(Plot::from(line(&basis.consistent).with_dashed()));
         let points = ScatterPlot::new().with_data::<f64, f64, CurvePoints>(basis.measured.clone());
-        plots.push(points.with_size(3.0).with_color(COLOURS[n]).into());
+        let points = points.with_size(5.0).with_color(COLOURS[n]).with_marker(MARKERS[n]);
+        plots.push(points.with_legend(&basis.name).into());
     }
     let layout = Layout::auto_from_plots(&plots)
         .with_x_axis_min(0.0)
