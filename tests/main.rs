@@ -7,6 +7,7 @@ mod bsplines;
 mod budget;
 #[path = "bench/cases.rs"]
 mod cases;
+mod choosing;
 mod cli;
 mod conformance;
 mod conservation;
@@ -16,6 +17,7 @@ mod exact;
 mod extremes;
 mod extremes_of_scenes;
 mod finite;
+mod fronts;
 mod fuzz;
 mod gate;
 mod gimp;

@@ -231,8 +231,6 @@ fn orders_of_the_committed_study_are_laid_out() {
         });
         let expected = name.contains("gamma=0.8")
             || (name.contains("gamma=1.8") && ladder.particles_per_cell == 8);
-        if gains != expected {
-            println!("XX {name} {gains} {climbed:?}");
-        }
+        assert_eq!(gains, expected, "{name}: {climbed:?}");
     }
 }
