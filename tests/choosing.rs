@@ -1,6 +1,7 @@
 //! What to choose: the committed study of the bar to 640 cells, its samples, and what the book
 //! says of it.
 
+use crate::orders;
 use crate::support::lines::{Dash, Frame, Line, lines, slope_triangle};
 use crate::support::*;
 use kuva::prelude::MarkerShape::{self, *};
@@ -85,7 +86,7 @@ const WAYS: [Way; 10] = [
         node: true,
         per_cell: 2,
         cfl: 0.2,
-        look: (0, Dash::Dashed, Circle),
+        look: (4, Dash::Dashed, Plus),
     },
     Way {
         name: "LME γ = 0.8 lumped",
@@ -109,7 +110,7 @@ const WAYS: [Way; 10] = [
         node: true,
         per_cell: 2,
         cfl: 0.2,
-        look: (2, Dash::Dashed, Square),
+        look: (9, Dash::Dashed, TriangleDown),
     },
     Way {
         name: "LME γ = 0.8 consistent",
@@ -125,7 +126,7 @@ const WAYS: [Way; 10] = [
         node: false,
         per_cell: 2,
         cfl: 0.2,
-        look: (1, Dash::Dashed, Diamond),
+        look: (5, Dash::Dashed, Triangle),
     },
     Way {
         name: "and with a small step",
@@ -133,7 +134,7 @@ const WAYS: [Way; 10] = [
         node: false,
         per_cell: 2,
         cfl: 0.05,
-        look: (7, Dash::Solid, TriangleDown),
+        look: (7, Dash::Solid, Circle),
     },
     Way {
         name: "finite elements",
@@ -141,7 +142,7 @@ const WAYS: [Way; 10] = [
         node: true,
         per_cell: 1,
         cfl: 0.5,
-        look: (6, Dash::Dashed, Cross),
+        look: (6, Dash::Dashed, Plus),
     },
     Way {
         name: "finite elements near limit",
@@ -286,15 +287,15 @@ fn choosing_gamma_is_a_spike_or_a_plateau() {
         (true, 40, 2, 1, Circle),
         (true, 40, 4, 3, Diamond),
         (true, 160, 2, 0, Square),
-        (false, 40, 2, 1, Circle),
-        (false, 40, 4, 3, Diamond),
-        (false, 160, 2, 0, Square),
+        (false, 40, 2, 5, Triangle),
+        (false, 40, 4, 7, TriangleDown),
+        (false, 160, 2, 4, Plus),
     ] {
         let errors = over_gamma(&study, node, cells, per_cell);
         let end = if node { "with" } else { "without" };
         write!(table, "\n{end},{cells},{per_cell}").unwrap();
         errors.iter().for_each(|error| write!(table, ",{error:.4}").unwrap());
-        let name = format!("{end} node, {cells} cells, {per_cell} per cell");
+        let name = format!("{end} node, {cells} cells × {per_cell}");
         let points = GAMMAS.iter().copied().zip(errors).collect();
         let dash = if node { Dash::Dashed } else { Dash::Solid };
         drawn.push(Line::new(name, points, colour).dashed(dash).marked(marker));
@@ -405,7 +406,6 @@ fn choosing_front_is_named() {
     let mut table = String::from(
         "number,velocity error,work [million],method,mass,basis,end node,cells,particles per cell,c Δt/h\n",
     );
-    let mut notes = Vec::new();
     let mut line = Vec::new();
     for (n, (row, error)) in front.iter().enumerate() {
         let (one, work) = (&row.configuration, row.work().unwrap() / 1e6);
@@ -423,7 +423,6 @@ fn choosing_front_is_named() {
             value("time.cfl")
         )
         .unwrap();
-        notes.push((work, error * 0.86, (n + 1).to_string()));
         line.push((work, *error));
     }
     assert!(front.len() > 5, "{}", front.len());
@@ -441,7 +440,14 @@ fn choosing_front_is_named() {
         ("OTM", "otm", 7, TriangleDown),
         ("finite elements", "finite elements", 6, Cross),
     ] {
-        let own = rows.iter().filter(|row| row.configuration.family() == family);
+        let shown = |row: &&Tried| {
+            let one = &row.configuration;
+            let usual = ["", "0.8", "1.8", "4"].contains(&one.value("basis.gamma"));
+            one.family() == family
+                && usual
+                && ["1", "2"].contains(&one.value("grid.particles_per_cell"))
+        };
+        let own = rows.iter().filter(shown);
         let point = |row: &Tried| Some((row.work()? / 1e6, row.error(Criterion::Velocity)?));
         let points = own.filter_map(point).collect();
         drawn.push(Line::new(name, points, colour).dashed(Dash::Nothing).marked(marker));
@@ -450,11 +456,110 @@ fn choosing_front_is_named() {
         x: "counted work of a run [million instructions]",
         y: "relative velocity error",
         log: true,
-        x_range: Some((0.3, 1e5)),
+        x_range: Some((3.0, 2e6)),
         y_range: Some((0.01, 0.3)),
-        notes,
+        notes: [(6.0, 0.2, "linear"), (60.0, 0.042, "OTM"), (4e4, 0.018, "LME consistent")]
+            .map(|(x, y, words)| (x, y, words.to_string()))
+            .to_vec(),
     };
     approve_picture("choosing__work", lines(&drawn, &frame));
+}
+
+/// The error of the velocity of the motion across cells on 160 cells, after one period, by basis and
+/// mass and by particles per cell.
+fn across_cells(way: &str, per_cell: usize) -> f64 {
+    let name =
+        format!("basis.kind={way} particles_per_cell={per_cell} spans=1 volumes=own along=h");
+    let study = orders::committed(orders::STUDY);
+    let (_, row) = study.iter().find(|(known, _)| *known == name).unwrap();
+    row.climbed.as_ref().unwrap().errors[3][0]
+}
+
+/// The page that decides: what to take for which problem, with what that makes of the velocity and
+/// what its rival makes. On the bar each choice has no larger error than its rival on 640 cells, and
+/// across cells on 160.
+#[test]
+fn choosing_verdicts() {
+    let study = committed();
+    let otm = Way {
+        line: "method=otm mass=lumped basis.kind=lme basis.gamma=4 time.integrator=newmark",
+        per_cell: 1,
+        cfl: 0.95,
+        ..WAYS[8]
+    };
+    let hasty = Way { cfl: 1.38, ..WAYS[0] };
+    let bar = |way: &Way, cells: usize| found(&study, "5", way, cells).velocity;
+    let mut table = String::from("problem,take,error of v,instead of,its error,measured on\n");
+    let mut row = |problem: &str, take: (&str, f64), rival: (&str, f64), place: &str| {
+        assert!(take.1 < rival.1, "{problem}: {} {}", take.1, rival.1);
+        let number = |x: f64| if x < 1e-3 { format!("{x:.0e}") } else { format!("{x:.3}") };
+        let (own, other) = (number(take.1), number(rival.1));
+        writeln!(table, "{problem},{},{own},{},{other},{place}", take.0, rival.0).unwrap();
+    };
+    // More particles do not help a front.
+    for way in [0, 1, 6] {
+        let of = |per_cell| bar(&Way { per_cell, ..WAYS[way] }, 40);
+        assert!([3, 4].into_iter().all(|n| of(n) > 1.05 * of(2)), "{}", WAYS[way].name);
+    }
+    let on_640 = "the bar with 640 cells";
+    row(
+        "front; no particle is needed",
+        ("finite elements near their limit", bar(&WAYS[9], 640)),
+        ("linear MPM with the lumped matrix", bar(&WAYS[0], 640)),
+        on_640,
+    );
+    row(
+        "front; the free end stays by its node",
+        ("LME 0.8 consistent without end node; c Δt/h = 0.05", bar(&WAYS[7], 640)),
+        ("B-splines consistent", bar(&WAYS[3], 640)),
+        on_640,
+    );
+    row(
+        "front; the free end passes nodes",
+        ("cubic B-splines consistent", bar(&WAYS[4], 640)),
+        ("LME 0.8 consistent with end node", bar(&WAYS[5], 640)),
+        on_640,
+    );
+    row(
+        "the same on a coarse grid",
+        ("LME 0.8 consistent with end node", bar(&WAYS[5], 40)),
+        ("cubic B-splines consistent", bar(&WAYS[4], 40)),
+        "the bar with 40 cells",
+    );
+    row(
+        "front; at a moderate cost",
+        ("OTM with LME 4 at c Δt/h = 0.95", bar(&otm, 640)),
+        ("linear MPM with the lumped matrix", bar(&WAYS[0], 640)),
+        on_640,
+    );
+    row(
+        "a quick look",
+        ("linear MPM lumped near its limit", bar(&hasty, 160)),
+        ("the same at c Δt/h = 0.5", bar(&WAYS[0], 160)),
+        "the bar with 160 cells",
+    );
+    let crossed = "the motion across 160 cells";
+    let (wide, wide_consistent) =
+        ("lme basis.gamma=0.8 mass=lumped", "lme basis.gamma=0.8 mass=consistent");
+    row(
+        "cells are crossed; two particles per cell",
+        ("LME 0.8 consistent", across_cells(wide_consistent, 2)),
+        ("B-splines consistent", across_cells("bspline mass=consistent", 2)),
+        crossed,
+    );
+    row(
+        "the same with the lumped matrix",
+        ("LME 0.8 lumped", across_cells(wide, 2)),
+        ("uGIMP lumped", across_cells("ugimp mass=lumped", 2)),
+        crossed,
+    );
+    row(
+        "cells are crossed; eight particles per cell",
+        ("LME 1.8 lumped", across_cells("lme basis.gamma=1.8 mass=lumped", 8)),
+        ("LME 0.8 lumped", across_cells(wide, 8)),
+        crossed,
+    );
+    approve("choosing__verdicts", &table);
 }
 
 /// Finite elements are OTM with the linear basis: nodes that start alike move as those of a chain

@@ -115,9 +115,9 @@ fn conservation_of_energy_local_max_ent() {
     approve("conservation__energy_lme", &table);
 }
 
-/// The energy of the vibrating bar of 8 cells over ten periods, c Δt/h = 1/2, scheme by scheme:
+/// The energy of the vibrating bar of 8 cells over a hundred periods, c Δt/h = 1/2, scheme by scheme:
 /// Newmark's keeps within 2% of its start, the other leapfrogs swing by more and come back,
-/// and stress-last and generalized-α lose more than a twentieth.
+/// and stress-last and generalized-α lose more than three percent.
 #[test]
 fn conservation_in_a_picture() {
     let looks = [
@@ -131,7 +131,9 @@ fn conservation_in_a_picture() {
     ];
     let mut drawn = Vec::new();
     for (scheme, (colour, dash)) in SCHEMES.into_iter().zip(looks) {
-        let sets = [scheme.sets, &["grid.cells=8", "time.cfl=0.5", "time.end=40"]].concat();
+        let sets =
+            [scheme.sets, &["grid.cells=8", "time.cfl=0.5", "time.end=400", "output.every=7"]]
+                .concat();
         let history = finished(&scene(VIBRATION, &sets)).history;
         let (t, total) = (column(&history, "t"), total_energy(&history));
         let own: Vec<f64> = total.iter().map(|energy| energy / total[0]).collect();
@@ -142,7 +144,7 @@ fn conservation_in_a_picture() {
             _ if scheme.leapfrog => {
                 assert!(swing > 0.02 && (last - first).abs() < 0.02, "{}: {swing}", scheme.name);
             }
-            _ => assert!(last < 0.95 * first, "{}: {first} {last}", scheme.name),
+            _ => assert!(last < 0.97 * first, "{}: {first} {last}", scheme.name),
         }
         let points = t.into_iter().map(|t| t / 4.0).zip(own).collect();
         drawn.push(Line::new(scheme.name, points, colour).dashed(dash));
@@ -150,7 +152,7 @@ fn conservation_in_a_picture() {
     let frame = Frame {
         x: "time [periods]",
         y: "energy / energy at the start",
-        x_range: Some((0.0, 10.0)),
+        x_range: Some((0.0, 100.0)),
         y_range: Some((0.0, 1.4)),
         ..Frame::default()
     };

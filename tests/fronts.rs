@@ -112,7 +112,7 @@ fn speeds(case: &Case) -> Vec<f64> {
     (0..WAVES).map(|k| dispersion::predicted(case.basis, &case.mass, theta(k))).collect()
 }
 
-/// A front in the middle of a bar has the error that the speeds of waves predict, to 16% on 40 to
+/// A front in the middle of a bar has the error that the speeds of waves predict, to a fifth on 40 to
 /// 320 cells, for linear functions with both matrices, B-splines and local max-ent with two time
 /// steps. So the error falls as h^(1/3) where waves are off as θ², to 0.06 from 80 to 320 cells, and with local
 /// max-ent, whose waves are right, and a small step, nearly as h^(1/2), as a jump between two nodes does.
@@ -120,6 +120,8 @@ fn speeds(case: &Case) -> Vec<f64> {
 fn fronts_miss_what_dispersion_predicts() {
     let mut table = String::from("way,cells,measured,predicted\n");
     let mut drawn = Vec::new();
+    let four_cells = dispersion::predicted(CASES[3].basis, &CONSISTENT, 0.5 * PI);
+    assert!((four_cells - 1.0).abs() < 1e-4, "{four_cells}");
     for case in &CASES {
         let speeds = speeds(case);
         let (mut dots, mut curve) = (Vec::new(), Vec::new());
@@ -127,7 +129,7 @@ fn fronts_miss_what_dispersion_predicts() {
             let (found, theory) = (measured(case, cells), predicted(&speeds, case.cfl, cells));
             let name = case.name.replace(',', ";");
             writeln!(table, "{name},{cells},{found:.4},{theory:.4}").unwrap();
-            assert!((found / theory - 1.0).abs() < 0.16, "{name}, {cells}: {found} {theory}");
+            assert!((found / theory - 1.0).abs() < 0.2, "{name}, {cells}: {found} {theory}");
             dots.push((cells as f64, found));
         }
         let h: Vec<f64> = dots.iter().skip(1).map(|dot| 1.0 / dot.0).collect();

@@ -160,7 +160,7 @@ fn orders_of_the_vortex() {
 }
 
 /// Reads the rows of a committed study, which are what `orders --row` prints.
-fn committed(text: &str) -> Vec<(String, Ascent)> {
+pub(crate) fn committed(text: &str) -> Vec<(String, Ascent)> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let records = reader.records().map(|record| record.unwrap());
     let row = |record: csv::StringRecord| {
@@ -170,7 +170,7 @@ fn committed(text: &str) -> Vec<(String, Ascent)> {
     records.map(row).collect()
 }
 
-const STUDY: &str = include_str!("../data/orders/manufactured.csv");
+pub(crate) const STUDY: &str = include_str!("../data/orders/manufactured.csv");
 
 /// The committed study of the motion across cells, 20 to 160 cells, has all ladders, and those
 /// of the linear basis with two particles per cell come out the same when they are climbed again.
