@@ -121,7 +121,7 @@ const WAYS: [Way; 10] = [
         look: (1, Dash::Solid, Diamond),
     },
     Way {
-        name: "the same without end node",
+        name: "LME γ = 0.8 no end node",
         line: WIDE,
         node: false,
         per_cell: 2,
@@ -129,7 +129,7 @@ const WAYS: [Way; 10] = [
         look: (5, Dash::Dashed, Triangle),
     },
     Way {
-        name: "and with a small step",
+        name: "LME no end node small step",
         line: WIDE,
         node: false,
         per_cell: 2,
@@ -458,9 +458,14 @@ fn choosing_front_is_named() {
         log: true,
         x_range: Some((3.0, 2e6)),
         y_range: Some((0.01, 0.3)),
-        notes: [(6.0, 0.2, "linear"), (60.0, 0.042, "OTM"), (4e4, 0.018, "LME consistent")]
-            .map(|(x, y, words)| (x, y, words.to_string()))
-            .to_vec(),
+        notes: [
+            (6.0, 0.2, "linear"),
+            (16.0, 0.052, "OTM"),
+            (2e4, 0.0165, "LME consistent"),
+            (60.0, 0.0125, "finite elements"),
+        ]
+        .map(|(x, y, words)| (x, y, words.to_string()))
+        .to_vec(),
     };
     approve_picture("choosing__work", lines(&drawn, &frame));
 }

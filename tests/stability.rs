@@ -516,8 +516,9 @@ fn scheme_by_scheme(
 
 /// The limits of c Δt/h of all schemes between two walls, as the book shows them: against the
 /// offset of two linear particles per cell, against γ, and against the particles per cell. The
-/// leapfrogs with the lumped matrix bear more than 1.6 times as much as any other scheme everywhere, and gain by a small
-/// γ, while the others stay below 1.7. With the consistent matrix the leapfrogs are below all
+/// leapfrogs with the lumped matrix bear more than 1.6 times as much as any other scheme in all
+/// three. From γ = 6 to 0.5 the limit of every lumped scheme more than doubles, with the
+/// consistent matrix it grows by less than a half. With it the leapfrogs are below all
 /// lumped schemes at offset 0, with every γ, and with every number of particles.
 #[test]
 fn stability_scheme_by_scheme() {
@@ -542,12 +543,19 @@ fn stability_scheme_by_scheme() {
         for place in 0..curves[0].points.len() {
             let at = |curve: usize| curves[curve].points[place].1;
             assert!((1..5).all(|other| at(0) > 1.6 * at(other)), "{name}, {place}: {}", at(0));
-            assert!((1..5).all(|other| at(other) < 1.7), "{name}, {place}");
+            let wide = name.ends_with("gamma");
+            assert!(wide || (1..5).all(|other| at(other) < 1.2), "{name}, {place}");
             let moved = name.ends_with("offsets") && place > 0;
             assert!(moved || (1..3).all(|lumped| at(3) < at(lumped)), "{name}, {place}");
         }
+        if name.ends_with("gamma") {
+            let gain = |n: usize| curves[n].points[0].1 / curves[n].points[7].1;
+            assert!((0..3).all(|lumped| gain(lumped) > 2.0), "{}", gain(0));
+            assert!((3..5).all(|consistent| gain(consistent) < 1.5), "{}", gain(3));
+        }
         let y = "limit of c Δt/h";
-        let frame = Frame { x, y, y_range: Some((0.0, 4.5)), ..Frame::default() };
+        let top = if name.ends_with("gamma") { 4.5 } else { 2.0 };
+        let frame = Frame { x, y, y_range: Some((0.0, top)), ..Frame::default() };
         approve_picture(name, lines(curves, &frame));
     }
 }
