@@ -2,7 +2,9 @@
 //! endless row, and measured by running a mode on a bar.
 
 use crate::support::figures::{self, Dispersion};
+use crate::support::lines::{Dash, Frame, Line, lines};
 use crate::support::*;
+use kuva::prelude::MarkerShape::{self, *};
 use lme_mpm::method::model::Model;
 use lme_mpm::method::time;
 use lme_mpm::scene::Scene;
@@ -28,6 +30,9 @@ const ROW_BASES: [(&str, Sets); 7] = [
     ("LME γ = 1.8", &["basis.kind=lme", "basis.gamma=1.8"]),
     ("LME γ = 4", &["basis.kind=lme", "basis.gamma=4"]),
 ];
+
+/// Each basis has a marker of its own.
+const MARKERS: [MarkerShape; 7] = [Circle, Plus, Square, Cross, Diamond, Triangle, TriangleDown];
 
 /// The particles of one cell in the middle of the row, and of sixteen.
 const CELL: std::ops::Range<usize> = 64..66;
@@ -96,7 +101,7 @@ fn measured(basis: Sets, mass: &MassCase, wave: usize) -> f64 {
 #[test]
 fn dispersion_is_predicted() {
     let mut table = String::from("basis,matrix,16 cells,8,4,16/7,largest difference\n");
-    let mut pictures = Vec::new();
+    let (mut pictures, mut filters) = (Vec::new(), Vec::new());
     for (name, basis) in ROW_BASES {
         let [mut curves, mut dots] = [[Vec::new(), Vec::new()], [Vec::new(), Vec::new()]];
         for (n, mass) in MASSES.iter().enumerate() {
@@ -123,6 +128,12 @@ fn dispersion_is_predicted() {
             let curve = (1..=60).map(|n| f64::from(n) / 60.0);
             curves[n] = curve.map(|x| (x, predicted(basis, mass, PI * x))).collect();
         }
+        let over = |[up, down]: &[Vec<(f64, f64)>; 2]| -> Vec<(f64, f64)> {
+            up.iter().zip(down).map(|(a, b)| (a.0, a.1 / b.1)).collect()
+        };
+        let (colour, marker) = (filters.len() / 2, MARKERS[filters.len() / 2]);
+        filters.push(Line::new("", over(&curves), colour));
+        filters.push(Line::new(name, over(&dots), colour).dashed(Dash::Nothing).marked(marker));
         let [lumped, consistent] = curves;
         pictures.push(Dispersion {
             name: name.into(),
@@ -133,6 +144,14 @@ fn dispersion_is_predicted() {
     }
     approve("dispersion__table", &table);
     approve_picture("dispersion__speeds", figures::dispersion(&pictures));
+    let frame = Frame {
+        x: "θ/π (1: a wave of two cells)",
+        y: "filter s(θ)",
+        x_range: Some((0.0, 1.0)),
+        y_range: Some((0.0, 1.0)),
+        ..Frame::default()
+    };
+    approve_picture("dispersion__filter", lines(&filters, &frame));
 }
 
 /// Every basis is exact for long waves, and the error of the speed falls as θ² at least; lumped it is slow by the factor s(θ) = M(θ)/M_L beside consistent, and s < 1.

@@ -7,6 +7,7 @@ mod bsplines;
 mod budget;
 #[path = "bench/cases.rs"]
 mod cases;
+mod choosing;
 mod cli;
 mod conformance;
 mod conservation;
@@ -22,6 +23,7 @@ mod figures_otm;
 mod figures_weak_form;
 mod finite;
 mod first_use;
+mod fronts;
 mod fuzz;
 mod gate;
 mod gimp;

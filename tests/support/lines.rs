@@ -5,6 +5,7 @@ use kuva::plot::legend::{LegendEntry, LegendShape};
 use kuva::prelude::*;
 use kuva::render::annotations::TextAnnotation;
 use lme_mpm::output::figure::{COLOURS, CurvePoints, own_ids};
+use std::sync::Arc;
 
 /// How a line is drawn.
 #[derive(Clone, Copy, PartialEq)]
@@ -81,6 +82,12 @@ pub fn slope_triangle(x: f64, y: f64, order: f64, words: &str) -> (Line, (f64, f
     (Line::new("", corners, 6), (0.9 * x, (y * low).sqrt(), words.to_string()))
 }
 
+/// Writes a tick: a number without zeros at its end.
+fn tick(x: f64) -> String {
+    let text = format!("{x:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_string()
+}
+
 /// Draws lines in a frame, with the legend below.
 pub fn lines(lines: &[Line], frame: &Frame) -> String {
     let mut plots: Vec<Plot> = Vec::new();
@@ -100,7 +107,9 @@ pub fn lines(lines: &[Line], frame: &Frame) -> String {
             plots.push(points.with_size(4.5).with_marker(marker).with_color(colour).into());
         }
     }
-    let legend = lines.iter().filter(|line| !line.name.is_empty()).map(Line::legend).collect();
+    let legend: Vec<LegendEntry> =
+        lines.iter().filter(|line| !line.name.is_empty()).map(Line::legend).collect();
+    let height = 460.0 + 24.0 * legend.len().div_ceil(2) as f64;
     let mut layout = Layout::auto_from_plots(&plots)
         .with_x_label(frame.x)
         .with_y_label(frame.y)
@@ -108,7 +117,8 @@ pub fn lines(lines: &[Line], frame: &Frame) -> String {
         .with_tick_size(16)
         .with_body_size(16)
         .with_width(660.0)
-        .with_height(520.0)
+        .with_height(height)
+        .with_tick_format(TickFormat::Custom(Arc::new(tick)))
         .with_legend_entries(legend)
         .with_legend_col_limit(2)
         .with_legend_position(LegendPosition::OutsideBottomColumns);
