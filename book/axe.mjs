@@ -33,7 +33,7 @@ const known = new Set();
 function layout() {
   const words = [];
   const height = (column) => {
-    const boxes = [...column.querySelectorAll("p, pre, .equation, ul, ol, details")].map((one) => one.getBoundingClientRect()).filter((box) => box.height);
+    const boxes = [...column.querySelectorAll("p, pre, .equation, ul, ol, details")].filter((one) => one.checkVisibility()).map((one) => one.getBoundingClientRect());
     return Math.max(0, ...boxes.map((box) => box.bottom)) - Math.min(...boxes.map((box) => box.top));
   };
   for (const pair of document.querySelectorAll(".side")) {
