@@ -189,8 +189,8 @@ pub const KEYS: &[Key] = &[
         "The strain as printed, or that of the map which moves the particles",
     )
     .besides(
-        "not with the method \"otm\" or an implicit integrator, whose strain is always that of the \
-         map",
+        "not with the method \"otm\", whose strain is always that of the map; \"consistent\" with an \
+         implicit integrator, which has no other",
     ),
     may(
         "time.cfl",
