@@ -10,8 +10,8 @@ use lme_mpm::method::measure::rms;
 use lme_mpm::method::model::{Model, State};
 use lme_mpm::output::figure::{Axes, curves};
 use lme_mpm::output::summary::Scales;
-use lme_mpm::run::{parse, stability};
-use lme_mpm::scene::{DYKA, Scene};
+use lme_mpm::run::{parse, parse_within, stability};
+use lme_mpm::scene::{Budget, DYKA, Scene};
 use lme_mpm::setup;
 use nalgebra::{SMatrix, SVector};
 use std::fmt::Write;
@@ -228,7 +228,7 @@ fn implicit_on_the_bar() {
         let u = over_time(&scene).unwrap().u;
         let drift = value(&scene, &outcome, "energy_drift");
         let per_step = outcome.cost.equilibrium_iterations as f64 / outcome.cost.steps as f64;
-        assert!(column(&outcome.history, "newton_residual").iter().all(|size| *size <= 1e-10));
+        assert!(column(&outcome.history, "equilibrium_residual").iter().all(|size| *size <= 1e-10));
         let all: Vec<f64> = outcome.history.rows().flatten().copied().collect();
         let kind = basis.replace("kind=", "");
         writeln!(
@@ -522,7 +522,7 @@ fn implicit_pays_for_slow_loads() {
     let mut row = |motion: &str, scheme: &str, cfl: &str, scene: &Scene| {
         let outcome = finished(scene);
         let Each { u, .. } = field_errors(scene, &outcome);
-        let (steps, factors) = (outcome.cost.steps, outcome.cost.tangent_factorizations);
+        let (steps, factors) = (outcome.cost.steps, outcome.cost.tangents);
         writeln!(table, "{motion},{scheme},{cfl},{steps},{factors},{u:.1e}").unwrap();
         u
     };
@@ -624,10 +624,10 @@ fn implicit_costs_only_who_asks() {
     let explicit = finished(&dyka(&["time.end=1e-5"]));
     let of = |outcome: &lme_mpm::run::Outcome| {
         let cost = outcome.cost;
-        (cost.equilibrium_iterations, cost.tangent_factorizations, cost.bytes_per_particle)
+        (cost.equilibrium_iterations, cost.tangents, cost.bytes_per_particle)
     };
     assert_eq!(of(&explicit), (0, 0, 64));
-    assert_eq!(explicit.history.column("newton_residual"), None);
+    assert_eq!(explicit.history.column("equilibrium_residual"), None);
     let (model, state) = at_start::<1>(&dyka(&[]));
     assert!(state.equilibrium.is_none() && state.node.u.is_empty());
     assert!(!model.method.needs().equilibrium);
@@ -637,7 +637,7 @@ fn implicit_costs_only_who_asks() {
     assert_eq!(bytes, 72); // a_p and G_p
     assert_eq!(
         iterations as f64,
-        column(&implicit.history, "newton_iterations").iter().sum::<f64>()
+        column(&implicit.history, "equilibrium_iterations").iter().sum::<f64>()
     );
     let still = finished(&scene(COLUMN, &["body.law=rate"]));
     assert_eq!((still.cost.bytes_per_particle, still.cost.solves), (72, 0)); // G_p and the stretch
@@ -673,7 +673,30 @@ fn implicit_refuses_what_makes_no_sense() {
     let unloaded = COLUMN.replace("[body_force]\nacceleration = -10\n", "");
     refused(&unloaded, &[], "body_force", "must load the body");
     refused(&unloaded, &["manufactured={mode=1, amplitude=1}"], "manufactured", "no inertia");
-    refused(COLUMN, &["probe.0.name=newton_residual"], "probe[0].name", "newton_residual");
+    refused(
+        COLUMN,
+        &["probe.0.name=equilibrium_residual"],
+        "probe[0].name",
+        "equilibrium_residual",
+    );
+}
+
+/// The tangent is part of the budget, with its factors: with a memory in which the explicit scheme has
+/// room the implicit one is refused by `time.integrator`, and in four hundred times that it has room.
+#[test]
+fn budget_of_the_tangent() {
+    let within = |memory: f64, sets: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
+        let budget = Budget { memory, ..Budget::default() };
+        parse_within(&budget, "test", "test.toml", AXIS_ALIGNED, &sets)
+    };
+    let lumped = ["mass=lumped", "output.every=1000"];
+    let room = (0..200).map(|n| 1e5 * 1.1_f64.powi(n)).find(|room| within(*room, &lumped).is_ok());
+    let room = room.unwrap();
+    let implicit = [&lumped[..], &[IMPLICIT]].concat();
+    let refused = within(room, &implicit).unwrap_err().to_string();
+    assert!(refused.contains("time.integrator") && refused.contains("of the tangent"), "{refused}");
+    assert!(within(400.0 * room, &implicit).is_ok());
 }
 
 /// A run that finds no equilibrium ends by name, with step and time: a disc that nothing holds, and
