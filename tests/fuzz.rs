@@ -79,6 +79,8 @@ const WORDS: &[&str] = &[
     "\"newmark\"",
     "\"forward-euler\"",
     "\"generalized-alpha\"",
+    "\"implicit-newmark\"",
+    "\"quasi-static\"",
     "\"last\"",
     "\"neo-hookean\"",
     "\"hencky\"",

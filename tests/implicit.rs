@@ -1,5 +1,6 @@
 //! The implicit schemes: Newmark's method with β = 1/4 and γ = 1/2, and equilibrium without inertia.
 
+use crate::support::figures;
 use crate::support::*;
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::method::choice::Law;
@@ -7,9 +8,10 @@ use lme_mpm::method::continuum::law::Elastic;
 use lme_mpm::method::continuum::moduli::Past;
 use lme_mpm::method::measure::rms;
 use lme_mpm::method::model::{Model, State};
+use lme_mpm::output::figure::{Axes, curves};
 use lme_mpm::output::summary::Scales;
-use lme_mpm::run::{parse, stability};
-use lme_mpm::scene::{DYKA, Scene};
+use lme_mpm::run::{parse, parse_within, stability};
+use lme_mpm::scene::{Budget, DYKA, Scene};
 use lme_mpm::setup;
 use nalgebra::{SMatrix, SVector};
 use std::fmt::Write;
@@ -101,6 +103,15 @@ fn residuals<const D: usize>(scene: &Scene, steps: usize) -> Vec<f64> {
     state.equilibrium.unwrap().residuals
 }
 
+/// A strip whose end is thrown along it and across, so fast that it strains by a tenth in a step.
+fn sheared(dimension: usize, sets: &[&str]) -> Scene {
+    let throw = ["[400,300]", "[400,300,200]"][dimension - 2];
+    let throw = format!("initial_velocity.0.velocity={throw}");
+    let cells = ["grid.cells=[12,3]", "grid.cells=[8,2,2]"][dimension - 2];
+    let own = [IMPLICIT, "time.cfl=3", "body.poisson_ratio=0.3", &throw, cells];
+    strip(dimension, &[&own, sets].concat())
+}
+
 /// Each residual of Newton's method is below ten times the square of the one before, down to
 /// round-off, where strains change by a tenth in a step: for every law in 1D to 3D, every basis and
 /// both mass matrices.
@@ -126,16 +137,19 @@ fn newton_falls_quadratically() {
         }
     }
     for (law, _) in LAWS {
-        let law_is = format!("body.law={law}");
-        for basis in ["basis.kind=linear", "basis.kind=gimp"] {
-            let sets = [IMPLICIT, "time.cfl=3", &law_is, basis];
-            let name = basis.split('=').next_back().unwrap();
-            let plane = [&sets[..], &["grid.cells=[6,6]"]].concat();
-            let plane = scene(VORTEX.replace("neo-hookean", law).as_str(), &plane);
-            check(format!("2,{law},{name},lumped"), &residuals::<2>(&plane, 2));
+        let law = format!("body.law={law}");
+        for dimension in [2, 3] {
+            for (basis, mass) in [("linear", LUMPED), ("gimp", CONSISTENT)] {
+                let kind = format!("basis.kind={basis}");
+                let scene = sheared(dimension, &[mass.sets, &[&law, &kind]].concat());
+                let residuals = match dimension {
+                    2 => residuals::<2>(&scene, 2),
+                    _ => residuals::<3>(&scene, 2),
+                };
+                let law = law.split('=').next_back().unwrap();
+                check(format!("{dimension},{law},{basis},{}", mass.name), &residuals);
+            }
         }
-        let sets = [IMPLICIT, "time.cfl=2", &law_is, "grid.cells=[4,4,4]", "mass=lumped"];
-        check(format!("3,{law},lme,lumped"), &residuals::<3>(&scene(AXIS_ALIGNED, &sets), 2));
     }
     approve("implicit__newton", &table);
 }
@@ -152,8 +166,8 @@ fn vibrating(sets: &[&str], steps: usize) -> Each<Vec<f64>> {
 
 /// With the linear basis and the consistent mass matrix the scheme is of order two in Δt, to 0.02,
 /// in v, σ and u: the vibrating bar with 10 to 160 steps of up to 6.4 cells, against itself with
-/// 16 times the steps of the finest. With the lumped matrix the mapping filters the
-/// acceleration in every step, and no single order fits.
+/// 16 times the steps of the finest. With the lumped matrix, where the mapping
+/// filters velocity and acceleration in every step, σ and u fall short of it by less than 0.05.
 #[test]
 fn implicit_order_in_time() {
     let steps = [10, 20, 40, 80, 160];
@@ -168,9 +182,9 @@ fn implicit_order_in_time() {
         });
         let Each { v, sigma, u } = orders(&dt, &errors);
         writeln!(table, "{},{v},{sigma},{u}", mass.name).unwrap();
-        println!("{table}");
         let second = [v, sigma, u].iter().all(|order| (order.slope - 2.0).abs() < 0.02);
-        assert_eq!(second, mass.name == "consistent", "{table}");
+        assert!(second || mass.name == "lumped", "{table}");
+        assert!([v, sigma, u].iter().all(|order| (order.slope - 2.0).abs() < 0.05), "{table}");
     }
     approve("implicit__order", &table);
 }
@@ -214,7 +228,7 @@ fn implicit_on_the_bar() {
         let u = over_time(&scene).unwrap().u;
         let drift = value(&scene, &outcome, "energy_drift");
         let per_step = outcome.cost.equilibrium_iterations as f64 / outcome.cost.steps as f64;
-        assert!(column(&outcome.history, "newton_residual").iter().all(|size| *size <= 1e-10));
+        assert!(column(&outcome.history, "equilibrium_residual").iter().all(|size| *size <= 1e-10));
         let all: Vec<f64> = outcome.history.rows().flatten().copied().collect();
         let kind = basis.replace("kind=", "");
         writeln!(
@@ -294,7 +308,7 @@ fn implicit_consistent_mass_fails_across_cells() {
 }
 
 /// No time step is too large to be stable in the linear case: a bar that vibrates with 0.5 to 500
-/// cells per step has never more energy than at the start but for 1e-6, for 200 steps, with both
+/// cells per step never has more energy than at the start but for 1e-3, for 200 steps, with both
 /// mass matrices. No limit is predicted, and none is written.
 #[test]
 fn implicit_has_no_limit() {
@@ -307,10 +321,51 @@ fn implicit_has_no_limit() {
             let outcome = finished(&scene);
             let energy = total_energy(&outcome.history);
             let most = energy.iter().fold(0.0, |most: f64, e| most.max(*e));
-            assert!(most <= energy[0] * (1.0 + 1e-6), "{}, {cfl}: {}", mass.name, most / energy[0]);
+            assert!(most <= energy[0] * (1.0 + 1e-3), "{}, {cfl}: {}", mass.name, most / energy[0]);
             assert_eq!(outcome.cost.limit_applications, 0);
         }
     }
+}
+
+/// Hold the particles in place, with the lumped matrix. A mode with the eigenvalues ω² of M_L⁻¹K and s
+/// of A loses the share (1 − s)(1 + 2s) z/(1 + z) of its energy in a step, z = (ωΔt/2)²: to 1e-7, on
+/// a bar between two walls, for modes from long to short and steps from a half to twenty cells. With
+/// the consistent matrix it loses nothing, to 1e-6.
+#[test]
+fn implicit_loses_what_the_mapping_takes() {
+    let mut table = String::from("mode of 40,c Δt/h,predicted,lumped,consistent\n");
+    for mode in [1, 10, 20, 38] {
+        for cfl in [0.5, 2.0, 20.0] {
+            let theta = std::f64::consts::PI * f64::from(mode) / 40.0;
+            let (s, z) = (0.625 + 0.375 * theta.cos(), (cfl * (0.5 * theta).sin()).powi(2));
+            let predicted = (1.0 - s) * (1.0 + 2.0 * s) * z / (1.0 + z);
+            let [lumped, consistent] = MASSES.map(|mass| lost(mode, cfl, mass));
+            assert!((lumped - predicted).abs() < 1e-7, "{mode}, {cfl}: {lumped} {predicted}");
+            assert!(consistent.abs() < 1e-6, "{mode}, {cfl}: {consistent:e}");
+            let of_matrix = 1e-6 * (1e6 * consistent).round() + 0.0;
+            writeln!(table, "{mode},{cfl},{predicted:.3e},{lumped:.3e},{of_matrix}").unwrap();
+        }
+    }
+    approve("implicit__loss", &table);
+}
+
+/// What a mode loses of its energy per step: 1 − d of the recurrence σ'' = t σ' − d σ that the stress
+/// of a particle follows.
+fn lost(mode: u32, cfl: f64, mass: MassCase) -> f64 {
+    let sets = [format!("vibration.mode={mode}"), format!("time.cfl={cfl}"), "time.end=50".into()];
+    let between = ["boundary.right=fixed", "vibration.velocity=1e-9", IMPLICIT];
+    let scene = scene(VIBRATION, &[&between, mass.sets, &strs(&sets)].concat());
+    let (mut model, mut state) = at_start::<1>(&scene);
+    model.dt = cfl / 40.0;
+    march(&model, &mut state, 0);
+    let mut series = Vec::new();
+    for step in 1..=4 {
+        advance(&model, &mut state, step).unwrap();
+        series.push(state.particle.sigma[31][0]);
+    }
+    let [a, b, c, d] = series[..] else { unreachable!() };
+    // c = t b − d a and d = t c − d b.
+    1.0 - (b * d - c * c) / (a * c - b * b)
 }
 
 /// Bodies in free flight keep their momentum to 1e-12 and take no strain, with one iteration per
@@ -342,8 +397,15 @@ fn implicit_keeps_momentum() {
 fn implicit_strip_is_the_bar() {
     for mass in MASSES {
         let ends = [1, 2, 3].map(|dimension| {
-            let end = format!("time.end={:?}", transit());
-            let sets = [&[IMPLICIT, &end, "time.cfl=1"], mass.sets].concat();
+            let list = |first, other| {
+                let cells = [first, other, other];
+                cells[..dimension].join(",")
+            };
+            let end = format!("time.end={:?}", 0.5 * transit());
+            let cells = format!("grid.cells=[{}]", list("20", "2"));
+            let length = format!("body.length=[{}]", list("0.1333", "0.01333"));
+            let to = format!("initial_velocity.0.to=[{}]", list("0.1333", "0.01333"));
+            let sets = [&[IMPLICIT, &end, &cells, &length, &to, "time.cfl=1"], mass.sets].concat();
             let outcome = finished(&strip(dimension, &sets));
             column(&outcome.history, "velocity_end")
         });
@@ -354,26 +416,32 @@ fn implicit_strip_is_the_bar() {
     }
 }
 
-/// In 2D and 3D at finite strain the motion is right: the vortex turns by more than half a radian
-/// with 5% of its velocity, and the axis-aligned motion with 2%, both on a coarse grid with steps
-/// of a cell, beyond the explicit limit.
+/// In 2D and 3D at finite strain, with the consistent mass matrix and half a cell per step, errors are
+/// at most two and a half times those of the explicit scheme, which takes two to five times as many steps.
 #[test]
 fn implicit_at_finite_strain() {
-    let mut table = String::from("motion,law,velocity,stress,displacement\n");
-    let mut row = |name: &str, scene: &Scene| {
-        let Each { v, sigma, u } = field_errors(scene, &finished(scene));
-        let law = scene.body.law;
-        writeln!(table, "{name},{law:?},{v:.1e},{sigma:.1e},{u:.1e}").unwrap();
-        Each { v, sigma, u }
+    let mut table = String::from("motion,law,scheme,steps,velocity,stress,displacement\n");
+    let mut row = |name: &str, law: &str, scheme: &str, scene: &Scene| {
+        let outcome = finished(scene);
+        let Each { v, sigma, u } = field_errors(scene, &outcome);
+        let steps = outcome.cost.steps;
+        writeln!(table, "{name},{law},{scheme},{steps},{v:.3},{sigma:.3},{u:.3}").unwrap();
+        [v, sigma, u]
     };
-    let vortex = row("vortex", &scene(VORTEX, &[IMPLICIT, "time.cfl=1", "grid.cells=[24,24]"]));
-    for law in ["rate", "neo-hookean", "hencky"] {
-        let law = format!("body.law={law}");
-        let sets = [IMPLICIT, "time.cfl=1", "grid.cells=[8,8,8]", "mass=lumped", &law];
-        let aligned = row("axis-aligned", &scene(AXIS_ALIGNED, &sets));
-        assert!(aligned.u < 0.05, "{aligned:?}");
+    let mut both = |name: &str, text: &str, law: &str, sets: &[&str]| {
+        let law_is = format!("body.law={law}");
+        let explicit = [&["time.kinematics=consistent", &law_is], sets].concat();
+        let explicit = row(name, law, "explicit", &scene(text, &explicit));
+        let sets = [&[IMPLICIT, "time.cfl=0.5", &law_is], sets].concat();
+        let implicit = row(name, law, "implicit", &scene(text, &sets));
+        for (a, b) in explicit.iter().zip(implicit) {
+            assert!(b < 2.5 * a, "{name}, {law}: {explicit:?} {implicit:?}");
+        }
+    };
+    both("vortex", VORTEX, "neo-hookean", &["grid.cells=[24,24]"]);
+    for (law, _) in LAWS {
+        both("axis-aligned", AXIS_ALIGNED, law, &["grid.cells=[6,6,6]"]);
     }
-    assert!(vortex.u < 0.2, "{vortex:?}");
     approve("implicit__finite", &table);
 }
 
@@ -406,11 +474,82 @@ fn column_of_ample() {
         assert!((error / expected - 1.0).abs() < 0.03, "{error:e} {expected:e}");
     }
     approve("implicit__column", &table);
+    let points = |errors: &[f64; 5]| cells.iter().map(|n| *n as f64).zip(*errors).collect();
+    let lists = [
+        ("linear", points(&linear)),
+        ("uGIMP", points(&ugimp)),
+        ("GIMP whose domains stretch", points(&gimp)),
+    ];
+    let picture = figures::convergence("Stress of a column under its weight", &lists);
+    approve_picture("implicit__column_figure", picture);
+}
+
+/// The stress along the column on 64 cells: that of the linear basis swings about the exact one by
+/// four tenths of the largest, and that of domains that stretch is on it but for the ends.
+#[test]
+fn column_stress_along_it() {
+    let along = |kind: &str| {
+        let outcome = finished(&scene(COLUMN, &[kind]));
+        let of = |name: &str| column(&outcome.particles, name);
+        let height: Vec<f64> = (0..128).map(|p| (p as f64 + 0.5) * 50.0 / 128.0).collect();
+        let kilo = |name: &str| of(name).into_iter().map(|x| 1e-3 * x).collect::<Vec<f64>>();
+        let points = |y: Vec<f64>| height.iter().copied().zip(y).collect::<Vec<(f64, f64)>>();
+        (points(kilo("stress")), points(kilo("stress_exact")))
+    };
+    let (linear, exact) = along("basis.kind=linear");
+    let (gimp, _) = along("basis.kind=gimp");
+    let off = |points: &[(f64, f64)]| {
+        largest(points.iter().zip(&exact).skip(4).take(120).map(|(a, b)| (a.1 - b.1) / 40.0))
+    };
+    assert!(off(&linear) > 0.4 && off(&gimp) < 5e-3, "{} {}", off(&linear), off(&gimp));
+    let lists = [("linear", linear), ("GIMP whose domains stretch", gimp), ("exact", exact)];
+    let axes = Axes::new(
+        "Stress of a column under its weight",
+        "height at rest [m]",
+        "stress [kPa]",
+        false,
+    );
+    approve_picture("implicit__column_stress", curves(&lists, &axes));
+}
+
+/// Where a load grows slowly, over a hundred transits of a wave, steps of forty cells, eighty times
+/// fewer than the explicit ones, have the displacement to half a percent: what they miss is the
+/// small vibration that the beginning of the load sets off. Where a wave is what matters that is not
+/// so: with five cells per step the bar that is thrown has more than twice the explicit error.
+#[test]
+fn implicit_pays_for_slow_loads() {
+    let mut table = String::from("motion,scheme,c Δt/h,steps,factorisations,displacement\n");
+    let mut row = |motion: &str, scheme: &str, cfl: &str, scene: &Scene| {
+        let outcome = finished(scene);
+        let Each { u, .. } = field_errors(scene, &outcome);
+        let (steps, factors) = (outcome.cost.steps, outcome.cost.tangents);
+        writeln!(table, "{motion},{scheme},{cfl},{steps},{factors},{u:.1e}").unwrap();
+        u
+    };
+    let slow = |scheme: &str, cfl: &str| {
+        let cfl = format!("time.cfl={cfl}");
+        scene(GRAVITY, &[scheme, &cfl, "body_force.ramp=0.63", "time.end=0.63"])
+    };
+    let explicit = row("slow", "explicit", "0.5", &slow("time.integrator=newmark", "0.5"));
+    let half = row("slow", "implicit", "0.5", &slow(IMPLICIT, "0.5"));
+    let some = row("slow", "implicit", "4", &slow(IMPLICIT, "4"));
+    let large = row("slow", "implicit", "40", &slow(IMPLICIT, "40"));
+    let errors = [explicit, half, some, large];
+    assert!(explicit < 1e-4 && half < 1e-4 && some < 1e-3 && large < 5e-3, "{errors:?}");
+    let thrown = |scheme: &str, cfl: &str| {
+        dyka(&[scheme, "grid.cells=80", &format!("time.cfl={cfl}"), "mass=consistent"])
+    };
+    let small = row("thrown", "explicit", "0.2", &thrown("time.integrator=newmark", "0.2"));
+    row("thrown", "implicit", "0.5", &thrown(IMPLICIT, "0.5"));
+    let large = row("thrown", "implicit", "5", &thrown(IMPLICIT, "5"));
+    assert!(large > 2.0 * small, "{small:e} {large:e}");
+    approve("implicit__pays", &table);
 }
 
 /// The column's displacement is that of its complementary energy: for every law the stress is
 /// E ln F, and so on, of the slope of u by differences, to 1e-8, hanging and standing, and with a
-/// traction alone. Run to the end on 64 cells it is right to 1e-4, with every law.
+/// traction alone. Run to the end on 64 cells it is right to 1e-4, with every law, and to 1e-3
+/// under the traction, which acts on particles half their distance from the end.
 #[test]
 fn column_has_an_exact_solution() {
     for (law, kind) in LAWS {
@@ -421,7 +560,8 @@ fn column_has_an_exact_solution() {
             &["boundary.left=free", "boundary.right=fixed"],
             &["body_force.acceleration=0", "traction.right=-1e5"],
         ] {
-            let scene = scene(COLUMN, &[sets, &[&law]].concat());
+            let room = "grid.beyond={left=3, right=3}";
+            let scene = scene(COLUMN, &[sets, &[&law, room]].concat());
             let exact = setup::exact::<1>(&scene).unwrap();
             let material = Elastic::new(kind, 1e6, 0.0);
             for X in [5.0, 20.0, 45.0] {
@@ -434,7 +574,8 @@ fn column_has_an_exact_solution() {
                 assert!((stress - at(X).stress).abs() < 1e-2, "{law}: {stress} {:?}", at(X));
             }
             let Each { u, .. } = field_errors(&scene, &finished(&scene));
-            assert!(u < 1e-4, "{law}, {sets:?}: {u:e}");
+            let bound = if sets.len() == 2 && sets[0].ends_with("=0") { 1e-3 } else { 1e-4 };
+            assert!(u < bound, "{law}, {sets:?}: {u:e}");
         }
     }
     let both = scene(COLUMN, &["boundary.right=fixed"]);
@@ -483,10 +624,10 @@ fn implicit_costs_only_who_asks() {
     let explicit = finished(&dyka(&["time.end=1e-5"]));
     let of = |outcome: &lme_mpm::run::Outcome| {
         let cost = outcome.cost;
-        (cost.equilibrium_iterations, cost.tangent_factorizations, cost.bytes_per_particle)
+        (cost.equilibrium_iterations, cost.tangents, cost.bytes_per_particle)
     };
     assert_eq!(of(&explicit), (0, 0, 64));
-    assert_eq!(explicit.history.column("newton_residual"), None);
+    assert_eq!(explicit.history.column("equilibrium_residual"), None);
     let (model, state) = at_start::<1>(&dyka(&[]));
     assert!(state.equilibrium.is_none() && state.node.u.is_empty());
     assert!(!model.method.needs().equilibrium);
@@ -496,7 +637,7 @@ fn implicit_costs_only_who_asks() {
     assert_eq!(bytes, 72); // a_p and G_p
     assert_eq!(
         iterations as f64,
-        column(&implicit.history, "newton_iterations").iter().sum::<f64>()
+        column(&implicit.history, "equilibrium_iterations").iter().sum::<f64>()
     );
     let still = finished(&scene(COLUMN, &["body.law=rate"]));
     assert_eq!((still.cost.bytes_per_particle, still.cost.solves), (72, 0)); // G_p and the stretch
@@ -512,7 +653,7 @@ fn implicit_refuses_what_makes_no_sense() {
         assert!(error.contains(key) && error.contains(words), "{sets:?}: {error}");
     };
     let limit = "no time step is too large";
-    refused(DYKA, &[IMPLICIT, "time.kinematics=consistent"], "time.kinematics", "of the map");
+    refused(DYKA, &[IMPLICIT, "time.kinematics=as-printed"], "time.kinematics", "of the map");
     refused(DYKA, &[IMPLICIT, "time.fraction_of_critical=0.9"], "time.fraction_of_critical", limit);
     refused(DYKA, &[IMPLICIT, "time.allow_unstable=true"], "time.allow_unstable", limit);
     refused(DYKA, &[IMPLICIT, "time.watch=0.1"], "time.watch", limit);
@@ -520,7 +661,6 @@ fn implicit_refuses_what_makes_no_sense() {
     refused(DYKA, &[IMPLICIT, "time.load_steps=3"], "time.load_steps", "means nothing");
     refused(DYKA, &["time.load_steps=3"], "time.load_steps", "means nothing");
     refused(DYKA_OTM, &[IMPLICIT], "time.integrator", "central differences");
-    refused(COLUMN, &["method=otm"], "time.integrator", "central differences");
     let load_steps = COLUMN.replace("load_steps = 20\n", "");
     refused(&load_steps, &[], "time.load_steps", "needs this key");
     refused(COLUMN, &["time.load_steps=0"], "time.load_steps", "from 1");
@@ -533,7 +673,30 @@ fn implicit_refuses_what_makes_no_sense() {
     let unloaded = COLUMN.replace("[body_force]\nacceleration = -10\n", "");
     refused(&unloaded, &[], "body_force", "must load the body");
     refused(&unloaded, &["manufactured={mode=1, amplitude=1}"], "manufactured", "no inertia");
-    refused(COLUMN, &["probe.0.name=newton_residual"], "probe[0].name", "newton_residual");
+    refused(
+        COLUMN,
+        &["probe.0.name=equilibrium_residual"],
+        "probe[0].name",
+        "equilibrium_residual",
+    );
+}
+
+/// The tangent is part of the budget, with its factors: with a memory in which the explicit scheme has
+/// room the implicit one is refused by `time.integrator`, and in four hundred times that it has room.
+#[test]
+fn budget_of_the_tangent() {
+    let within = |memory: f64, sets: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
+        let budget = Budget { memory, ..Budget::default() };
+        parse_within(&budget, "test", "test.toml", AXIS_ALIGNED, &sets)
+    };
+    let lumped = ["mass=lumped", "output.every=1000"];
+    let room = (0..200).map(|n| 1e5 * 1.1_f64.powi(n)).find(|room| within(*room, &lumped).is_ok());
+    let room = room.unwrap();
+    let implicit = [&lumped[..], &[IMPLICIT]].concat();
+    let refused = within(room, &implicit).unwrap_err().to_string();
+    assert!(refused.contains("time.integrator") && refused.contains("of the tangent"), "{refused}");
+    assert!(within(400.0 * room, &implicit).is_ok());
 }
 
 /// A run that finds no equilibrium ends by name, with step and time: a disc that nothing holds, and

@@ -29,8 +29,8 @@ pub struct Cost {
     pub solves: u64,
     /// Iterations of Newton's method for the nodal displacements of an implicit step.
     pub equilibrium_iterations: u64,
-    /// Factorisations of the tangent of these.
-    pub tangent_factorizations: u64,
+    /// Tangents of these that were factorised.
+    pub tangents: u64,
     /// Nodes looked at in the search for neighbours.
     pub candidates: u64,
     /// Passes over all particles by the watch on the limit of Δt: tables, bounds, and
@@ -59,7 +59,7 @@ impl Cost {
             ("factorizations", &mut self.factorizations),
             ("solves", &mut self.solves),
             ("equilibrium_iterations", &mut self.equilibrium_iterations),
-            ("tangent_factorizations", &mut self.tangent_factorizations),
+            ("tangents", &mut self.tangents),
             ("candidates", &mut self.candidates),
             ("limit_applications", &mut self.limit_applications),
             ("bytes_per_particle", &mut self.bytes_per_particle),

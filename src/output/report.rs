@@ -94,6 +94,7 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Fault {
         | Breakdown::NoBasis { .. }
         | Breakdown::SingularMass { .. }
         | Breakdown::NoMass { .. }
+        | Breakdown::NoEquilibrium { .. }
         | Breakdown::Interrupted
         | Breakdown::OutOfTime { .. } => String::new(),
         Breakdown::BeyondLimit { .. } | Breakdown::Gained { .. } => {
@@ -102,6 +103,7 @@ fn broken(dir: &Path, scene: &Scene, stopped: Stopped) -> Fault {
                 .to_string()
         }
         Breakdown::LeftGrid { .. } | Breakdown::NotFinite { .. } if courant <= 1.0 => String::new(),
+        _ if scene.time.load_steps.is_some() => "try more time.load_steps; ".to_string(),
         _ if scene.mass == Mass::Consistent => format!(
             "the Courant number c Δt / h is {courant:.3}: try a smaller time.cfl, or more \
              particles per cell for the consistent mass matrix; "

@@ -118,8 +118,10 @@ pub fn lines(scene: &Scene, outcome: &Outcome, wall_time: f64) -> Vec<SummaryLin
     }
     energy_lines(&mut lines, scene, outcome);
     warning_lines(&mut lines, outcome);
-    lines.push(SummaryLine::new("time_step", outcome.dt, "s"));
-    lines.push(SummaryLine::new("courant_number", scene.courant_number(), "1"));
+    if scene.time.load_steps.is_none() {
+        lines.push(SummaryLine::new("time_step", outcome.dt, "s"));
+        lines.push(SummaryLine::new("courant_number", scene.courant_number(), "1"));
+    }
     lines.push(SummaryLine::new("wall_time", wall_time, "s"));
     lines
 }

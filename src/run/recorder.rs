@@ -5,6 +5,7 @@ use super::outcome::Frame;
 use super::particles;
 use super::table::Table;
 use crate::method::breakdown::{Breakdown, Moment};
+use crate::method::continuum::state::Particles;
 use crate::method::exact::Exact;
 use crate::method::measure;
 use crate::method::model::{Model, State};
@@ -93,8 +94,8 @@ impl<'a, const D: usize> Recorder<'a, D> {
     }
 
     /// Writes a row: `step`, `t`, energies and, with loads, their work (J), of an implicit step its
-    /// iterations and the residual that is left (–), momentum (kg m/s), from 2D on angular momentum (kg m²/s), and each probe followed by its exact
-    /// value where the scene has an exact solution.
+    /// iterations and the residual that is left (–), momentum (kg m/s), from 2D on angular momentum
+    /// (kg m²/s), and the probes.
     fn row(
         &mut self,
         state: &State<D>,
@@ -102,7 +103,7 @@ impl<'a, const D: usize> Recorder<'a, D> {
         [kinetic, strain]: [f64; 2],
         work: Option<f64>,
     ) {
-        let (particle, carriers) = (&state.particle, state.carriers(self.model.method));
+        let carriers = state.carriers(self.model.method);
         let history = &mut self.history;
         history.put(|| "step".into(), moment.step as f64);
         history.put(|| "t".into(), moment.time);
@@ -114,8 +115,9 @@ impl<'a, const D: usize> Recorder<'a, D> {
         if let Some(system) = &state.equilibrium {
             let residuals = &system.residuals;
             let iterations = residuals.len().saturating_sub(1);
-            history.put(|| "newton_iterations".into(), iterations as f64);
-            history.put(|| "newton_residual".into(), residuals.last().copied().unwrap_or(0.0));
+            history.put(|| "equilibrium_iterations".into(), iterations as f64);
+            let residual = residuals.last().copied().unwrap_or(0.0);
+            history.put(|| "equilibrium_residual".into(), residual);
         }
         for (i, p_i) in measure::momentum(&carriers).iter().enumerate() {
             history.put(|| per_axis("momentum", D, i), *p_i);
@@ -124,6 +126,14 @@ impl<'a, const D: usize> Recorder<'a, D> {
             let axes = if D == 3 { 3 } else { 1 };
             history.put(|| per_axis("angular_momentum", axes, i), *l_i);
         }
+        self.probes(&state.particle, moment.time);
+        self.history.end_row();
+    }
+
+    /// Writes each probe at time `t` (s), followed by its exact value where the scene has an exact
+    /// solution.
+    fn probes(&mut self, particle: &Particles<D>, t: f64) {
+        let history = &mut self.history;
         for (probe, p) in self.scene.probes.iter().zip(&self.followed) {
             let (p, reference) = (*p, self.reference[*p]);
             let value = match probe.quantity {
@@ -133,7 +143,7 @@ impl<'a, const D: usize> Recorder<'a, D> {
             };
             history.put(|| probe.name.clone(), value);
             if let Some(exact) = &self.exact {
-                let fields = exact.at(&reference, moment.time);
+                let fields = exact.at(&reference, t);
                 let value = match probe.quantity {
                     Quantity::Velocity(i) => fields.velocity[i],
                     Quantity::Stress(i, j) => fields.stress[(i, j)],
@@ -142,7 +152,6 @@ impl<'a, const D: usize> Recorder<'a, D> {
                 history.put(|| format!("{}_exact", probe.name), value);
             }
         }
-        history.end_row();
     }
 
     /// Makes the table of the particles at time `t` (s).

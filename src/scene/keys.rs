@@ -46,8 +46,8 @@ const TAKEN: &[&str] = &[
     "kinetic_energy",
     "strain_energy",
     "work",
-    "newton_iterations",
-    "newton_residual",
+    "equilibrium_iterations",
+    "equilibrium_residual",
     "momentum",
     "momentum_x",
     "momentum_y",
@@ -189,8 +189,8 @@ pub const KEYS: &[Key] = &[
         "The strain as printed, or that of the map which moves the particles",
     )
     .besides(
-        "not with the method \"otm\" or an implicit integrator, whose strain is always that of the \
-         map",
+        "not with the method \"otm\", whose strain is always that of the map; \"consistent\" with an \
+         implicit integrator, which has no other",
     ),
     may(
         "time.cfl",

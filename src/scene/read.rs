@@ -1,12 +1,13 @@
 //! Makes of the values as written a checked [`Scene`].
 
 use super::fault::SceneError;
+use super::implicit::implicit;
 use super::limits::{Budget, affordable};
 use super::loading::{body_force, traction};
 use super::motion::motion;
 use super::parts::*;
 use super::probes::probes;
-use super::scheme::{basis, implicit, integrator, kinematics, nodal_mass, otm, time};
+use super::scheme::{basis, integrator, kinematics, nodal_mass, otm, time};
 use super::sizes::wave_speed;
 use super::source::Source;
 use super::values::{Values, counted};

@@ -1,8 +1,8 @@
 //! Reads basis and integrator of a scene, and refuses what OTM cannot do.
 
 use super::fault::SceneError;
-use super::keys::AXES;
-use super::parts::{GridSpec, Side, Time};
+use super::implicit::IMPLICIT;
+use super::parts::{GridSpec, Time};
 use super::values::Values;
 use crate::method::basis::{Basis, Degree, Support};
 use crate::method::choice::Integrator;
@@ -100,57 +100,6 @@ pub fn basis(values: &Values, grid: &GridSpec) -> Result<Basis, Box<SceneError>>
             },
         }),
         other => Err(values.error("basis.kind", format!("\"{other}\" is not known here"))),
-    }
-}
-
-/// These schemes solve for the nodal displacements.
-const IMPLICIT: [&str; 2] = ["implicit-newmark", "quasi-static"];
-
-/// Refuses what means nothing with an implicit scheme, and what a run without inertia lacks.
-pub fn implicit(values: &Values, boundary: &[[Side; 2]]) -> Result<(), Box<SceneError>> {
-    const NO_LIMIT: &str = "no time step is too large to be stable";
-    const NO_INERTIA: &str = "there is no inertia, and so no motion but that of the loads";
-    const TO_THE_END: &str = "loads grow until time.end";
-    const REFUSED: [(&str, &str, usize); 11] = [
-        ("time.kinematics", "the strain is always that of the map", 0),
-        ("time.fraction_of_critical", NO_LIMIT, 0),
-        ("time.allow_unstable", NO_LIMIT, 0),
-        ("time.watch", NO_LIMIT, 0),
-        ("time.cfl", "time.load_steps counts the steps", 1),
-        ("initial_velocity", NO_INERTIA, 1),
-        ("vibration", NO_INERTIA, 1),
-        ("manufactured", NO_INERTIA, 1),
-        ("vortex", NO_INERTIA, 1),
-        ("body_force.ramp", TO_THE_END, 1),
-        ("traction.ramp", TO_THE_END, 1),
-    ];
-    let word = values.word("time.integrator")?;
-    let Some(level) = IMPLICIT.iter().position(|scheme| *scheme == word) else { return Ok(()) };
-    let refuse = |key: &str, other: &str, problem: &str, allowed: &str| {
-        let mut error = values.error_at(key, other, format!("with \"{word}\" {problem}"));
-        error.allowed = allowed.to_string();
-        Err(error)
-    };
-    let senseless = REFUSED.iter().find(|(key, _, from)| *from <= level && values.has(key));
-    if let Some((key, problem, _)) = senseless {
-        return refuse(key, key, problem, "no such key");
-    }
-    if level == 0 {
-        return Ok(());
-    }
-    if values.word("mass")? != "lumped" {
-        return refuse("mass", "mass", "no mass matrix is solved with", "\"lumped\"");
-    }
-    if !(values.has("body_force") || values.has("traction")) {
-        return refuse("body_force", "time.integrator", "something must load the body", "a load");
-    }
-    let held = |i: usize| boundary.iter().flatten().any(|side| side.fixed[i]);
-    match (0..values.dimension()).find(|i| !held(*i)) {
-        None => Ok(()),
-        Some(i) => {
-            let problem = format!("no side holds the body along {}", AXES[i]);
-            refuse("boundary", "time.integrator", &problem, "a side that is fixed along each axis")
-        }
     }
 }
 

@@ -219,7 +219,7 @@ impl<const D: usize> Equilibrium<D> {
             let mirrored = place(&self.pattern, J, I).map_or(0.0, |k| self.values[k]);
             self.symmetric[k] = 0.5 * (self.values[k] + mirrored);
         }
-        self.cost.tangent_factorizations += 1;
+        self.cost.tangents += 1;
         self.factor = factorise(self.factor.take(), &self.pattern, &self.symmetric);
         let factor = self.factor.as_ref()?;
         let n = self.pattern.major_dim();

@@ -67,10 +67,12 @@ pub fn factorise(
         }
     };
     let factor = factor.ok()?;
-    let is_regular = |J: usize| {
+    for J in 0..pattern.major_dim() {
         let entry = place(pattern, J, J).map_or(0.0, |k| values[k]);
         let pivot = factor.l().col(J).values()[0];
-        pivot * pivot >= SINGULAR * entry
-    };
-    (0..pattern.major_dim()).all(is_regular).then_some(factor)
+        if pivot * pivot < SINGULAR * entry {
+            return None;
+        }
+    }
+    Some(factor)
 }

@@ -177,8 +177,7 @@ impl<'a, const D: usize> Operator<'a, D> {
         let factor = match self.factor {
             OfScheme::One | OfScheme::Filtered => 1.0,
             OfScheme::Last => 2.0,
-            OfScheme::Unlimited => 0.0,
-            OfScheme::Alpha(_) => return None,
+            OfScheme::Alpha(_) | OfScheme::Unlimited => return None,
         };
         if self.model.mass == Mass::Consistent || self.out.contains(&true) {
             return None;
