@@ -70,7 +70,7 @@ LAB.presets = {
   },
   spin: {
     name: "A spinning bar", set: { motion: "spin", basis: "bspline", cells: 16, cfl: 0.2, jump: 1, colour: "stress" },
-    link: ["finite-strain.html#what-a-turn-does", "Finite strain"],
+    link: ["finite-strain.html#what-came-out", "Finite strain"],
     words: "A free bar turns once about its middle, and turning stretches it along its axis. The rate law leaves that tension where it was in space while the bar turns on, which shears the bar; the neo-Hookean law takes the tension along, and the bar comes back straight.",
   },
 };
