@@ -23,7 +23,7 @@ LAB.bar = (() => {
       picture.dots(x, scaled(run.at(field, frame), unit), css("--lab-blue"));
       const p = pointed(run);
       picture.dots([x[p]], [run.at(field, frame)[p] / unit], css("--lab-orange"), 4);
-      $(field).setAttribute("aria-label", `${nameOf[field]} of ${run.count} particles along the bar at ${run.t[frame].toExponential(2)} s, over the exact one`);
+      $(field).setAttribute("aria-label", `${nameOf[field]} of ${run.count} particles along the bar at ${LAB.seconds(run.t[frame])}, over the exact one`);
     }
   }
 
@@ -115,7 +115,7 @@ LAB.bar = (() => {
   function tellMap(canvas, run, frame) {
     canvas.setAttribute("aria-valuenow", pointed(run));
     canvas.setAttribute("aria-valuemax", run.count - 1);
-    canvas.setAttribute("aria-valuetext", `material point at ${LAB.round(material(run))} m, ${run.t[frame].toExponential(2)} s`);
+    canvas.setAttribute("aria-valuetext", `material point at ${LAB.round(material(run))} m, ${LAB.seconds(run.t[frame])}`);
   }
 
   // What the picture of the probe shows: values, exact values, and a unit.
@@ -143,6 +143,7 @@ LAB.bar = (() => {
     picture.cursor(run.t[frame]);
     const units = { 1e6: "MPa", 1e-3: "mm" };
     $("probe-unit").textContent = `(${units[unit] || (/stress/.test(name) ? "Pa" : /angular/.test(name) ? "kg m²/s" : /momentum/.test(name) ? "kg m/s" : "m/s")})`;
+    $("probe-exact").hidden = !exact;
     $("probe").setAttribute("aria-label", `History of ${name.replace(/_/g, " ")}${exact ? ", computed and exact" : ""}`);
   }
 

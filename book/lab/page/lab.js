@@ -11,6 +11,9 @@
   // What is shown, what is being computed, and which of its moments is shown.
   let seen = null, coming = null, frame = 0, playing = false, isHeld = false;
 
+  // For whoever looks on: what is shown.
+  LAB.shown = () => ({ run: seen, frame });
+
   // --- Runs ------------------------------------------------------------------------------
 
   // A run that takes longer than this is shown while it is computed (ms).
@@ -26,9 +29,9 @@
     const particles = (s.cells * s.ppc) ** (run.plane ? 2 : 1);
     const moments = Math.max(20, Math.min(160, Math.floor(KEPT / (7 * particles))));
     LAB.program.begin(moments, LAB.motion().scene, LAB.sets(), (parts) => { run.hear(parts); heard(run); });
+    setTimeout(busy, PATIENCE);
     LAB.shape.ask();
     LAB.steps.draw();
-    setTimeout(busy, PATIENCE);
   }
 
   // Something new is known of the run that is coming.
@@ -48,6 +51,7 @@
     if (run.error) { lab.classList.toggle("lab-plane", LAB.plane()); return ready(); }
     const wasLive = run === seen;
     exchange(run);
+    if (wasLive && !isHeld && !playing) frame = run.t.length - 1;
     if (LAB.state.jump !== undefined && !(wasLive && isHeld)) frame = Math.round(LAB.state.jump * (run.t.length - 1));
     delete LAB.state.jump;
     figures();
@@ -112,7 +116,8 @@
     words.push(`${seen.count} particles, ${seen.steps} steps`);
     if (seen.limit.length && isFinite(seen.limit[1])) words.push(`limit of c Δt/h ${seen.limit[1].toPrecision(4)}`);
     if (seen.took !== undefined) words.push(`computed here in ${seen.took.toFixed(0)} ms`);
-    $("figures").textContent = words.join("; ") + "." + (seen.warnings ? ` Warning: ${seen.warnings.replace(/\n/g, "; ")}` : "");
+    $("figures").textContent = `${words.join("; ")}.`;
+    $("warning").textContent = seen.warnings.replace(/^/gm, seen.warnings && "Warning: ");
   }
 
   // --- Drawing ---------------------------------------------------------------------------
@@ -130,7 +135,7 @@
     frame = Math.min(frame, last);
     $("frame").max = last;
     $("frame").value = frame;
-    $("now").textContent = seen.t.length ? `t = ${seen.t[frame].toExponential(2)} s` : "";
+    $("now").textContent = seen.t.length ? `t = ${LAB.seconds(seen.t[frame])}` : "";
     $("frame").setAttribute("aria-valuetext", $("now").textContent);
     if (!seen.t.length) return;
     // What is seen may still be that of another motion, while this one is refused or computed.
@@ -190,12 +195,8 @@
     select.value = Math.min(LAB.state.probe, Math.max(0, names.length - 1));
   }
 
-  let waiting = 0;
   function change() {
-    show(); LAB.write();
-    // All that the hand did since the last turn is one change.
-    clearTimeout(waiting);
-    waiting = setTimeout(compute, 0);
+    show(); LAB.write(); compute();
   }
   function set(name, value) {
     LAB.state[name] = value;
@@ -304,6 +305,7 @@
       if (event.key in places) pointTo((Math.max(0, Math.min(last, places[event.key])) + 0.5) / seen.count);
       else if (!times) return;
       event.preventDefault();
+      event.stopPropagation(); // The book turns its pages by the same keys.
       to(frame + (times || 0));
     });
     for (const name of ["N", "slope", "force"]) drag($(name), (place, x) => {

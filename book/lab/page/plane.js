@@ -35,7 +35,7 @@ LAB.drawPlane = (() => {
       pen.fillRect(x - size, y - size, 2 * size, 2 * size);
     }
     const what = run.motion === "spin" ? "a spinning bar" : "two discs";
-    canvas.setAttribute("aria-label", `${run.count} particles of ${what} at ${run.t[frame].toPrecision(3)} s`);
+    canvas.setAttribute("aria-label", `${run.count} particles of ${what} at ${LAB.seconds(run.t[frame])}`);
   };
 
   // The distance of two particles at the start (m).

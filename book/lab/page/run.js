@@ -91,7 +91,7 @@ LAB.Run = class {
 
 // The exact solution of the bar depends on its motion alone, so it is asked for once for each.
 LAB.exact = (() => {
-  const ROWS = 120;
+  const ROWS = 160;
   let key = "", found = null, now = { key: "" }, point = { key: "" };
   const own = () => [LAB.motion().scene, ...LAB.setsOfMotion()].join(" ");
   const ask = (name, number) => LAB.list(LAB.program.ask(name, number, LAB.motion().scene, LAB.setsOfMotion()).exact);

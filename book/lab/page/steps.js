@@ -115,7 +115,7 @@ LAB.steps = (() => {
     if (seen.error) return;
     $("step-name").textContent = step ? `Step ${step}: ${NAMES[step]}` : `Before time step ${k}`;
     $("step-k").max = seen.k[1]; $("step-k").value = k;
-    $("step-k-out").textContent = `k = ${k}, t = ${(k * seen.dt[0]).toExponential(2)} s`;
+    $("step-k-out").textContent = `k = ${k}, t = ${LAB.seconds(k * seen.dt[0])}`;
     light();
     fill($("step-particles"), OF_PARTICLES, "particle p");
     fill($("step-nodes"), OF_NODES, "node I");
