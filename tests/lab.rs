@@ -1,6 +1,7 @@
 //! The solver in the book's page: the committed WebAssembly against the program itself.
 
 use crate::support::*;
+use approx::assert_relative_eq;
 use lme_mpm::run::parse;
 use lme_mpm::scene::{DYKA, SHIPPED};
 use std::collections::BTreeMap;
@@ -37,7 +38,7 @@ impl Lab {
     }
 
     /// Calls a function of the interface, and takes its answer apart.
-    fn ask(&mut self, name: &str, request: &[&str]) -> BTreeMap<String, Vec<u8>> {
+    fn ask(&mut self, name: &str, request: &[&str]) -> Parts {
         let request = request.join("\0");
         let length = request.len() as i32;
         let alloc = self.instance.get_typed_func::<i32, i32>(&self.store, "alloc").unwrap();
@@ -45,6 +46,18 @@ impl Lab {
         self.memory.write(&mut self.store, start as usize, request.as_bytes()).unwrap();
         let function = self.instance.get_typed_func::<(i32, i32), i32>(&self.store, name).unwrap();
         let at = function.call(&mut self.store, (start, length)).unwrap();
+        self.take(at)
+    }
+
+    /// Takes the run that has begun on by so many steps.
+    fn go_on(&mut self, steps: i32) -> Parts {
+        let function = self.instance.get_typed_func::<i32, i32>(&self.store, "go_on").unwrap();
+        let at = function.call(&mut self.store, steps).unwrap();
+        self.take(at)
+    }
+
+    /// Takes an answer apart, and gives it back.
+    fn take(&mut self, at: i32) -> Parts {
         let all = self.memory.data(&self.store)[at as usize..].to_vec();
         let number = |at: usize| u32::from_le_bytes(all[at..at + 4].try_into().unwrap()) as usize;
         let (mut next, end) = (4, number(0) + 4);
@@ -68,7 +81,10 @@ impl Lab {
     }
 }
 
-fn text(parts: &BTreeMap<String, Vec<u8>>, name: &str) -> String {
+/// The parts of an answer by name.
+type Parts = BTreeMap<String, Vec<u8>>;
+
+fn text(parts: &Parts, name: &str) -> String {
     parts.get(name).map_or(String::new(), |part| String::from_utf8(part.clone()).unwrap())
 }
 
@@ -164,36 +180,56 @@ fn lab_digests_are_current() {
 #[test]
 fn lab_refuses_in_the_program_s_words() {
     let mut lab = Lab::new();
-    let wrong = lab.ask("run", &["100", DYKA, "basis.kind=cubic"]);
+    let wrong = lab.ask("begin", &["100", DYKA, "basis.kind=cubic"]);
     let own = parse("lab", "scene", DYKA, &["basis.kind=cubic".to_string()]).unwrap_err();
     assert_eq!(text(&wrong, "error"), own.to_string());
-    let unstable = text(&lab.ask("run", &["100", DYKA, "time.cfl=1.75"]), "error");
+    let unstable = text(&lab.ask("begin", &["100", DYKA, "time.cfl=1.75"]), "error");
     assert!(unstable.starts_with("the time step is too large: c Δt / h is 1.7"), "{unstable}");
-    assert!(text(&lab.ask("run", &["many"]), "error").contains("not a number"));
+    assert!(text(&lab.ask("begin", &["many"]), "error").contains("not a number"));
     assert!(text(&lab.ask("shape", &["9", DISCS]), "error").contains("one axis"));
+    assert_eq!(text(&lab.go_on(1), "error"), "no run has begun");
     assert!(lab.ask("limit", &["0", DYKA]).contains_key("limit"));
 }
 
 /// Numbers of a part.
-fn numbers(parts: &BTreeMap<String, Vec<u8>>, name: &str) -> Vec<f64> {
+fn numbers(parts: &Parts, name: &str) -> Vec<f64> {
     let number = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().unwrap());
     parts[name].chunks_exact(8).map(number).collect()
 }
 
-/// A run for pictures has frames, at most as many as asked for and the first, and what they show
-/// at the end is the program's last state; a limit is the program's own; functions are those of
-/// the table.
+/// A run that is taken on in pieces has the moments that were asked for, the first and the last
+/// among them, and shows the program's own last state, history and summary; a limit is the
+/// program's own; functions are those of the table.
 #[test]
 fn lab_shows_what_the_program_has() {
     let mut lab = Lab::new();
-    let run = lab.ask("run", &["50", DYKA, "grid.cells=10"]);
+    let begun = lab.ask("begin", &["50", DYKA, "grid.cells=10"]);
     let scene = dyka(&["grid.cells=10"]);
     let own = finished(&scene);
-    let (t, particles) = (numbers(&run, "t"), numbers(&run, "particles"));
-    assert!((40..=52).contains(&t.len()) && *t.last().unwrap() == scene.time.end, "{}", t.len());
-    let last: Vec<f64> = own.particles.rows().flatten().copied().collect();
-    assert_eq!(particles[particles.len() - last.len()..], last);
-    assert_eq!(numbers(&run, "exact").len() % t.len(), 0);
+    let (mut t, mut particles, mut history) = (Vec::new(), Vec::new(), Vec::new());
+    let last = loop {
+        let piece = lab.go_on(7);
+        t.extend(numbers(&piece, "t"));
+        particles.extend(numbers(&piece, "particles"));
+        history.extend(numbers(&piece, "history"));
+        if piece.contains_key("done") {
+            break piece;
+        }
+    };
+    assert!((40..=52).contains(&t.len()) && t[0] == 0.0, "{}", t.len());
+    assert_eq!((numbers(&begun, "sizes")[3], *t.last().unwrap()), (scene.time.end, scene.time.end));
+    let names = ["position", "displacement", "velocity", "stress"];
+    let columns = names.map(|name| own.particles.column(name).unwrap());
+    let rows = (0..columns[0].len()).flat_map(|p| columns.iter().map(move |column| column[p]));
+    let rows: Vec<f64> = rows.collect();
+    assert_eq!(particles[particles.len() - rows.len()..], rows);
+    assert_eq!(history, own.history.rows().flatten().copied().collect::<Vec<_>>());
+    let summary = text(&last, "summary.names");
+    let place = summary.lines().position(|name| name == "velocity_end_rms_relative").unwrap();
+    let lines = lme_mpm::output::summary::lines(&scene, &own, 0.0);
+    let line = lines.iter().find(|line| line.quantity == "velocity_end_rms_relative").unwrap();
+    assert_eq!(numbers(&last, "summary")[place], line.value);
+    let run = begun;
     let limit = lme_mpm::run::stability::critical(&scene).unwrap();
     assert_eq!(numbers(&run, "limit")[1], scene.courant_number_of(limit.used()));
     let shape = lab.ask("shape", &["81", DYKA, "grid.cells=8", "basis.kind=bspline"]);
@@ -203,6 +239,62 @@ fn lab_shows_what_the_program_has() {
     let at: Vec<_> = x.iter().map(|x| nalgebra::SVector::repeat(*x)).collect();
     for (I, n, own, _) in on_grid(&model.basis, &model.grid, &at).unwrap().shape.pairs() {
         assert_eq!(N[n * nodes + I], own);
+    }
+}
+
+/// Exact fields and histories of the page are those of the program.
+#[test]
+fn lab_knows_the_exact_solution() {
+    let mut lab = Lab::new();
+    let exact = lme_mpm::setup::exact::<1>(&dyka(&[])).unwrap();
+    let fields = numbers(&lab.ask("moment", &["4e-5", DYKA]), "exact");
+    let all = numbers(&lab.ask("exact", &["5", DYKA]), "exact");
+    let history = numbers(&lab.ask("point", &["0.05", DYKA]), "exact");
+    for n in [0, 100, 240] {
+        let (X, end) = (0.1333 * n as f64 / 240.0, dyka(&[]).time.end);
+        let [at, later] = [4e-5, 0.5 * end].map(|t| exact.along(X, t));
+        assert_eq!(fields[3 * n..3 * n + 3], [X + at.displacement, at.velocity, at.stress]);
+        assert_eq!(all[3 * (2 * 241 + n) + 1], later.velocity);
+        let row = &history[4 * n..4 * n + 4];
+        let at = exact.along(0.05, row[0]);
+        assert_eq!(row[1..], [at.velocity, at.stress, at.displacement]);
+    }
+}
+
+/// The steps that the page goes through are those of the plain file, number by number: what
+/// particles are after the ninth of each of them.
+#[test]
+fn lab_steps_are_those_of_one_bar() {
+    use lme_mpm::method::one_bar::{OneBar, one_bar};
+    let mut lab = Lab::new();
+    let scene = dyka(&["grid.cells=4"]);
+    let bar = OneBar {
+        length: 0.1333,
+        density: 7833.0,
+        youngs_modulus: 200e9,
+        thrown_from: 0.099975,
+        velocity: 5.0,
+        cells: 4,
+        particles_per_cell: 2,
+        dt: scene.time.end / scene.step_count(),
+        steps: 3,
+    };
+    let own = one_bar(&bar, None).unwrap();
+    for k in 1..=3 {
+        let steps = lab.ask("steps", &[&k.to_string(), DYKA, "grid.cells=4"]);
+        for (name, own) in ["x_p", "v_p", "sigma_p", "rho_p"].iter().zip(&own[k]) {
+            let all = numbers(&steps, name);
+            assert_eq!(all.len(), 10 * 8, "before and after nine steps, eight particles");
+            for (own, x) in own.iter().zip(&all[9 * 8..]) {
+                assert_relative_eq!(x, own, max_relative = 1e-12, epsilon = 1e-12);
+            }
+        }
+        // Step 3 fills the nodes that step 2 has emptied.
+        let m = numbers(&steps, "m_I");
+        assert!(
+            m[2 * 6..3 * 6].iter().all(|m| *m == 0.0)
+                && m[3 * 6..3 * 6 + 5].iter().all(|m| *m > 0.0)
+        );
     }
 }
 

@@ -113,7 +113,7 @@ fn lab(to: &Path) -> Result<()> {
     let wasm =
         fs::read(root().join("book/lab/lab.wasm")).context("cannot read book/lab/lab.wasm")?;
     let mut scenes = String::new();
-    for name in ["dyka", "manufactured", "colliding-discs"] {
+    for name in ["dyka", "manufactured", "colliding-discs", "spinning-bar"] {
         let text = read(&format!("data/scenes/{name}.toml"))?;
         // A string of Rust is one of JavaScript.
         scenes.push_str(&format!("{name:?}: {text:?}, "));
