@@ -143,6 +143,27 @@ fn generalized_alpha_parameters() {
     assert_eq!((alpha_m, beta, gamma), (-1.0, 2.5, 2.5));
 }
 
+/// At Ω² = (1 + ρ_b)² (2 − ρ_b) the cubic of one oscillator,
+/// (z − 1)² [(1 − α_m) z + α_m] + Ω² [1 − γ + γ z + (z − 1)(½ − β + β z)], is (1 − α_m)(z + ρ_b)³:
+/// its three roots are one.
+#[test]
+fn generalized_alpha_roots_meet_at_minus_rho_b() {
+    for rho_b in [0.0, 0.2, 0.5, 0.8, 1.0] {
+        let Parameters { alpha_m, beta, gamma } = Parameters::new(rho_b);
+        let omega_2 = (1.0 + rho_b) * (1.0 + rho_b) * (2.0 - rho_b);
+        let of_z = [
+            alpha_m + (0.5 - gamma + beta) * omega_2,
+            1.0 - 3.0 * alpha_m + (0.5 + gamma - 2.0 * beta) * omega_2,
+            3.0 * alpha_m - 2.0 + beta * omega_2,
+        ];
+        let wanted = [rho_b * rho_b * rho_b, 3.0 * rho_b * rho_b, 3.0 * rho_b];
+        for (coefficient, wanted) in of_z.iter().zip(wanted) {
+            let off = coefficient / (1.0 - alpha_m) - wanted;
+            assert!(off.abs() < 1e-14, "{rho_b}: {off:e}");
+        }
+    }
+}
+
 /// The bar computed once more by a program that shares nothing with this one,
 /// data/reference/bar.py: the errors of three schemes on two grids agree to ten digits.
 #[test]
