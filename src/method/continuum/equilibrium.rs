@@ -15,6 +15,9 @@ use nalgebra_sparse::pattern::SparsityPattern;
 /// The tangent's equations are solved to this share of their right side.
 const SOLVED: f64 = 1e-12;
 
+/// Where round-off lets it come no nearer, they are to this share.
+const ROUGHLY: f64 = 1e-6;
+
 /// So many times a solution is bettered at most.
 const ROUNDS: usize = 60;
 
@@ -238,9 +241,13 @@ impl<const D: usize> Equilibrium<D> {
             if now <= SOLVED * whole {
                 break;
             }
-            if !(now < 0.9 * before) {
+            let falls = now < 0.9 * before;
+            if !falls {
                 // Round-off ends it, or the symmetric part says too little of the whole.
-                if now <= 1e-6 * whole { break } else { return None }
+                if now <= ROUGHLY * whole {
+                    break;
+                }
+                return None;
             }
         }
         for I in 0..self.correction.len() {
