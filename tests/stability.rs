@@ -9,7 +9,6 @@ use lme_mpm::method::choice::{Integrator, Method};
 use lme_mpm::method::model::State;
 use lme_mpm::method::reading::Kinematics;
 use lme_mpm::method::time::{otm, steps};
-use lme_mpm::output::figure::{self, Axes};
 use lme_mpm::run::stability::{
     OfScheme, Operator, Tridiagonal, at_offset, critical, grows, limit, measured, noise,
     over_offsets, predicted,
@@ -481,9 +480,21 @@ fn stability_map_over_offsets() {
         }
     }
     approve("stability__over_offsets", &table);
-    let title = "The limit of Δt over a cell: lumped mass, one particle per cell";
-    let axes = Axes::new(title, "offset of the particles [cells]", "limit of c Δt/h [–]", false);
-    approve_picture("stability__over_offsets_figure", figure::curves(&lists, &axes));
+    let looks = [
+        ("linear", Dash::Solid, Circle),
+        ("uGIMP", Dash::Dashed, Plus),
+        ("quadratic B-splines", Dash::Solid, Square),
+        ("LME γ = 0.8", Dash::Solid, Diamond),
+        ("LME γ = 1.8", Dash::Dashed, Triangle),
+        ("LME γ = 4", Dash::Dashed, TriangleDown),
+    ];
+    let curve = |(n, ((_, points), (name, dash, marker)))| {
+        Line::new(name, points, n).dashed(dash).marked(marker)
+    };
+    let drawn: Vec<Line> = lists.into_iter().zip(looks).enumerate().map(curve).collect();
+    let (x, y) = ("offset of the particles [cells]", "limit of c Δt/h");
+    let frame = Frame { x, y, y_range: Some((0.0, 4.0)), ..Frame::default() };
+    approve_picture("stability__over_offsets_figure", lines(&drawn, &frame));
 }
 
 /// The schemes whose limits differ, with the mass matrix, a name, a colour, a dash and a marker.

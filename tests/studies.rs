@@ -1,8 +1,9 @@
 //! The studies: their configurations, their logs, and what they find on the bar.
 
+use crate::support::lines::{Dash, Frame, Line, lines};
 use crate::support::*;
+use kuva::prelude::MarkerShape::*;
 use lme_mpm::method::cost::Cost;
-use lme_mpm::output::figure::{self, Axes};
 use lme_mpm::run::table::shortest;
 use lme_mpm::scene::DYKA;
 use lme_mpm::scene::fault::Fault;
@@ -421,8 +422,7 @@ fn trade_on_the_bar() {
                     cost.steps
                 )
                 .unwrap();
-                let (work, group) = (pairs as f64, configuration.family());
-                efforts.push(figure::Effort { work, error: Some(velocity), group });
+                efforts.push((configuration.family(), (pairs as f64, velocity)));
             }
             Err(problem) => {
                 let what = problem.split_once("s: ").map_or(problem.as_str(), |(_, what)| what);
@@ -431,10 +431,40 @@ fn trade_on_the_bar() {
         }
     }
     approve("trade__bar", &table);
-    let title = "Velocity error against counted work, 40 cells";
-    let x_label = "pairs of particle and node, all steps [–]";
-    let svg = figure::work_precision(title, x_label, &efforts, &Vec::new());
-    approve_picture("trade__bar_figure", svg);
+    approve_picture("trade__bar_figure", traded(efforts));
+}
+
+/// Draws groups of (pairs, error), and the front of all that are no finite elements.
+fn traded(mut efforts: Vec<(String, (f64, f64))>) -> String {
+    efforts.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
+    let mut front: Vec<(f64, f64)> = Vec::new();
+    for (_, point) in efforts.iter().filter(|(group, _)| group != "finite elements") {
+        if front.last().is_none_or(|last| point.1 < last.1) {
+            front.push(*point);
+        }
+    }
+    let mut drawn = vec![Line::new("front of the particle methods", front, 6)];
+    let markers = [Circle, Plus, Square, Cross, Diamond, Triangle, TriangleDown];
+    let words = [("lme", "LME"), ("ugimp", "uGIMP"), ("bspline", "B-splines"), ("otm", "OTM")];
+    for (group, point) in efforts {
+        let group = words.iter().fold(group, |group, (key, word)| group.replace(key, word));
+        let known = drawn.iter().position(|line| line.name == group).unwrap_or_else(|| {
+            let n = drawn.len() - 1;
+            let line = Line::new(group, Vec::new(), n).dashed(Dash::Nothing);
+            drawn.push(line.marked(markers[n % markers.len()]));
+            n + 1
+        });
+        drawn[known].points.push(point);
+    }
+    let frame = Frame {
+        x: "pairs of particle and node",
+        y: "relative velocity error",
+        log: true,
+        x_range: Some((1e4, 1e6)),
+        y_range: Some((0.03, 0.3)),
+        ..Frame::default()
+    };
+    lines(&drawn, &frame)
 }
 
 /// What the book says of the trade on the bar, 40 cells.
@@ -529,15 +559,23 @@ fn gamma_from_end_to_end() {
         }
     }
     approve("gamma__study", &(table + "\n"));
-    let curves = |name| gamma::curves(&rows, name);
-    let title = "Velocity error of the bar against γ, 40 cells";
-    let svg =
-        figure::curves(&curves("velocity"), &Axes::new(title, "γ [–]", "relative error [–]", true));
-    approve_picture("gamma__velocity", svg);
-    let title = "Frequency error of a wave of eight cells";
-    let y_label = "size of the relative error [–]";
-    let svg = figure::curves(&curves("dispersion"), &Axes::new(title, "γ [–]", y_label, true));
-    approve_picture("gamma__dispersion", svg);
+    for (name, y) in [
+        ("velocity", "relative velocity error, 40 cells"),
+        ("dispersion", "frequency error of a wave of 8 cells"),
+    ] {
+        let looks = [
+            ("MPM lumped", 0, Dash::Solid, Circle),
+            ("MPM consistent", 1, Dash::Dashed, Diamond),
+            ("OTM", 2, Dash::Solid, Square),
+        ];
+        let curve = |((_, points), (words, colour, dash, marker))| {
+            Line::new(words, points, colour).dashed(dash).marked(marker)
+        };
+        let drawn: Vec<Line> =
+            gamma::curves(&rows, name).into_iter().zip(looks).map(curve).collect();
+        let frame = Frame { x: "γ of local max-ent", y, log: true, ..Frame::default() };
+        approve_picture(&format!("gamma__{name}"), lines(&drawn, &frame));
+    }
 }
 
 /// A time step given as a part of the predicted limit, and a limit in the summary.

@@ -113,6 +113,7 @@ pub fn lines(lines: &[Line], frame: &Frame) -> String {
     let mut layout = Layout::auto_from_plots(&plots)
         .with_x_label(frame.x)
         .with_y_label(frame.y)
+        .with_x_label_offset(0.0, -6.0)
         .with_label_size(18)
         .with_tick_size(16)
         .with_body_size(16)
