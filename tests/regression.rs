@@ -260,10 +260,19 @@ fn comparison_across_cells() {
     approve_picture("manufactured__displacement", svg);
 }
 
-/// The discs when they touch are the approved picture.
+/// The discs when they touch are the approved picture: the first of them has less than a tenth of
+/// the speed of the start, and its fastest particle more than four tenths.
 #[test]
 fn discs_figure() {
     let scene = scene(DISCS, &["time.end=1.9"]);
-    let svg = figure::particles(&scene, &finished(&scene).particles, scene.time.end);
+    let particles = finished(&scene).particles;
+    let [x, y, u, v] = ["position_x", "position_y", "velocity_x", "velocity_y"]
+        .map(|name| column(&particles, name));
+    let first = || (0..x.len()).filter(|p| x[*p] + y[*p] < 1.0);
+    let mean = |list: &[f64]| first().map(|p| list[p]).sum::<f64>() / first().count() as f64;
+    let (start, whole) = (0.02_f64.sqrt(), mean(&u).hypot(mean(&v)));
+    let fastest = largest(first().map(|p| u[p].hypot(v[p])));
+    assert!(whole < 0.1 * start && fastest > 0.4 * start, "{whole}, {fastest}");
+    let svg = figure::particles(&scene, &particles, scene.time.end);
     approve_picture("discs__contact", svg);
 }
