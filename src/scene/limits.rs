@@ -44,26 +44,9 @@ pub struct Excess {
 /// Errors: [`Excess`] with the key that asks for too much.
 pub fn affordable(scene: &Scene, budget: &Budget) -> Result<(), Excess> {
     let steps = scene.step_count();
-    let too_much = |key, problem, allowed| Err(Excess { key, problem, allowed });
-    let limit = budget.memory / 1e9;
     let (arrays, factors) = (arrays(scene), factors(scene));
     if arrays + factors > budget.memory {
-        let gb = (arrays + factors) / 1e9;
-        let problem = format!("this grid and basis need {gb:.1} GB of memory");
-        let allowed = format!("a grid and basis that need at most {limit:.1} GB, which is there");
-        return match factors > arrays {
-            true if is_implicit(scene) => too_much(
-                "time.integrator",
-                format!("{problem} with the factors of the tangent"),
-                format!("an explicit scheme, or {allowed}"),
-            ),
-            true => too_much(
-                "mass",
-                format!("{problem} with the factors of the consistent matrix"),
-                format!("\"lumped\", or {allowed}"),
-            ),
-            false => too_much("grid.cells", problem, allowed),
-        };
+        return Err(too_large(scene, budget, arrays, factors));
     }
     let work = work(scene);
     if steps > MOST_STEPS || work > budget.work {
@@ -79,7 +62,7 @@ pub fn affordable(scene: &Scene, budget: &Budget) -> Result<(), Excess> {
                 budget.work
             ),
         };
-        return too_much("time.end", problem, allowed);
+        return Err(Excess { key: "time.end", problem, allowed });
     }
     let recorded = recorded(scene);
     if arrays + factors + recorded > budget.memory {
@@ -87,9 +70,23 @@ pub fn affordable(scene: &Scene, budget: &Budget) -> Result<(), Excess> {
         let problem = format!("{what} of {steps:e} steps ask for {gb:.1} GB of memory");
         let left = (budget.memory - arrays - factors) / 1e9;
         let allowed = format!("{what} of at most {left:.1} GB, which is there; see output.every");
-        return too_much("time.end", problem, allowed);
+        return Err(Excess { key: "time.end", problem, allowed });
     }
     Ok(())
+}
+
+/// Says what makes a scene's grid and basis too large: its arrays, or factors (bytes).
+fn too_large(scene: &Scene, budget: &Budget, arrays: f64, factors: f64) -> Excess {
+    let (gb, limit) = ((arrays + factors) / 1e9, budget.memory / 1e9);
+    let problem = format!("this grid and basis need {gb:.1} GB of memory");
+    let allowed = format!("a grid and basis that need at most {limit:.1} GB, which is there");
+    let (key, of, instead) = match factors > arrays {
+        false => return Excess { key: "grid.cells", problem, allowed },
+        true if is_implicit(scene) => ("time.integrator", "tangent", "an explicit scheme"),
+        true => ("mass", "consistent matrix", "\"lumped\""),
+    };
+    let problem = format!("{problem} with the factors of the {of}");
+    Excess { key, problem, allowed: format!("{instead}, or {allowed}") }
 }
 
 /// Tells whether nodal displacements are solved for.

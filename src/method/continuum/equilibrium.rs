@@ -211,17 +211,7 @@ impl<const D: usize> Equilibrium<D> {
     ///
     /// `None` where the symmetric part is not positive definite, or the rest is not small.
     pub fn solve(&mut self, known: impl Fn(usize, usize) -> bool) -> Option<()> {
-        let known = |n: usize| known(n / D, n % D);
-        for (k, (J, I)) in self.pattern.entries().enumerate() {
-            let single = if I == J { 1.0 } else { 0.0 };
-            if known(I) || known(J) {
-                self.values[k] = single;
-            }
-        }
-        for (k, (J, I)) in self.pattern.entries().enumerate() {
-            let mirrored = place(&self.pattern, J, I).map_or(0.0, |k| self.values[k]);
-            self.symmetric[k] = 0.5 * (self.values[k] + mirrored);
-        }
+        self.symmetrise(|n| known(n / D, n % D));
         self.cost.tangents += 1;
         self.factor = factorise(self.factor.take(), &self.pattern, &self.symmetric);
         let factor = self.factor.as_ref()?;
@@ -256,6 +246,19 @@ impl<const D: usize> Equilibrium<D> {
         Some(())
     }
     // ANCHOR_END: solve_tangent
+
+    /// Takes known components out of K, and ½ (K + Kᵀ) of it.
+    fn symmetrise(&mut self, known: impl Fn(usize) -> bool) {
+        for (k, (J, I)) in self.pattern.entries().enumerate() {
+            if known(I) || known(J) {
+                self.values[k] = if I == J { 1.0 } else { 0.0 };
+            }
+        }
+        for (k, (J, I)) in self.pattern.entries().enumerate() {
+            let mirrored = place(&self.pattern, J, I).map_or(0.0, |k| self.values[k]);
+            self.symmetric[k] = 0.5 * (self.values[k] + mirrored);
+        }
+    }
 }
 
 /// Gives the largest size of an entry.
