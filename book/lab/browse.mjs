@@ -144,7 +144,7 @@ for (const colour of ["stress", "speed"]) { await part(page, "colour").selectOpt
 // A long run says how far it is, moves while it is computed, gives way to another, and can be stopped.
 await preset(page, "rotation");
 await choose(page, "law", "neo-hookean");
-await put(page, "cells", 60);
+await put(page, "cells", 100);
 await part(page, "running").waitFor();
 await page.waitForFunction(() => LAB.shown().run.t.length > 3 && !LAB.shown().run.done);
 const soFar = await shown(page, "frame");
@@ -153,7 +153,7 @@ check(/running: \d+ % of/.test(await say(page, "progress")), `a long run says ho
 await part(page, "halt").click();
 check(/stopped here after \d+ steps/.test(await say(page, "error")), "a run is stopped");
 check(await part(page, "running").isHidden(), "and does not run any more");
-await put(page, "cells", 70);
+await put(page, "cells", 110);
 await page.waitForTimeout(100);
 await preset(page, "dispersion");
 check(velocity(await say(page, "figures")) === dispersed, "what is stale is dropped");
