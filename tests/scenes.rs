@@ -104,6 +104,7 @@ fn scenes_keys_are_read() {
             (_, "basis.degree") => (DYKA, [a, b]), // without a γ
             (_, "time.integrator") => (text, ["newmark", "corrected-euler"]),
             (_, "initial_velocity.to") => (text, ["0.12", "0.13"]),
+            (_, "initial_velocity.spin") => (DISCS, [a, b]),
             (_, "probe.component") => (DISCS, ["x", "y"]),
             (_, "time.load_steps") => (COLUMN, [a, b]),
             (_, "output.vtk") => (DISCS, [a, b]),

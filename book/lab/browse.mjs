@@ -66,6 +66,8 @@ let page = await open(1400);
 check(/lme-mpm run data\/scenes\/dyka\.toml --set time\.cfl=0\.5$/.test(await say(page, "command")), "the command of the start");
 check(await page.locator(".lab-static").isHidden(), "the static figure is away");
 check(await page.evaluate("LAB.program.isWorker()"), "a worker computes");
+const time = await part(page, "play").boundingBox();
+check(time.y > 0 && time.y + time.height <= 1000, `the time is in the first view: ${time.y}`);
 for (const name of ["v", "s", "map", "probe", "energy", "N", "slope", "force"]) check((await drawn(page, name)) > 800, `${name} is drawn`);
 
 // What the summary of the native program says of the command that the page shows, number by number.
@@ -142,7 +144,7 @@ for (const colour of ["stress", "speed"]) { await part(page, "colour").selectOpt
 // A long run says how far it is, moves while it is computed, gives way to another, and can be stopped.
 await preset(page, "rotation");
 await choose(page, "law", "neo-hookean");
-await put(page, "cells", 60);
+await put(page, "cells", 100);
 await part(page, "running").waitFor();
 await page.waitForFunction(() => LAB.shown().run.t.length > 3 && !LAB.shown().run.done);
 const soFar = await shown(page, "frame");
@@ -151,7 +153,7 @@ check(/running: \d+ % of/.test(await say(page, "progress")), `a long run says ho
 await part(page, "halt").click();
 check(/stopped here after \d+ steps/.test(await say(page, "error")), "a run is stopped");
 check(await part(page, "running").isHidden(), "and does not run any more");
-await put(page, "cells", 70);
+await put(page, "cells", 110);
 await page.waitForTimeout(100);
 await preset(page, "dispersion");
 check(velocity(await say(page, "figures")) === dispersed, "what is stale is dropped");
@@ -232,6 +234,8 @@ for (let n = 1; n <= 9; n++) {
   check((await say(page, "step-name")).startsWith(`Step ${n}:`) && lines.length > 1 && lines[0].includes(`// Step ${n}`), `step ${n} is lit: ${lines[0]}`);
   check(lines.every((line) => listing.includes(line.trim())), `step ${n} is of the file`);
 }
+const inView = await page.evaluate(() => { const [line, pre] = [".lab-lit", ".lab-listing pre"].map((name) => document.querySelector(`#lab ${name}`).getBoundingClientRect()); return line.top >= pre.top && line.bottom <= pre.bottom; });
+check(inView, "the lines that are lit are in view");
 await part(page, "step-on").click();
 check(/k = 2/.test(await say(page, "step-k-out")) && (await say(page, "step-name")).startsWith("Step 1"), "the next time step begins");
 await put(page, "step-k", 5);

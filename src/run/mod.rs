@@ -1,19 +1,21 @@
 //! The time loop carries a scene to its end: scene → state → step, step, … → history.
 
 pub mod columns;
+mod course;
 mod guards;
 mod open;
 mod outcome;
 mod particles;
 mod recorder;
-mod running;
+
 pub mod stability;
 pub mod table;
 mod warning;
 
+pub use course::Course;
 pub use open::{parse, parse_within};
 pub use outcome::{Frame, Outcome, Stopped};
-pub use running::Running;
+
 pub use warning::{Warning, Worst};
 
 use crate::method::breakdown::{Breakdown, BrokenDown};
@@ -59,19 +61,19 @@ fn run_in<const D: usize>(
     progress: &mut dyn FnMut(usize) -> ControlFlow<Breakdown>,
 ) -> Result<Outcome, Box<Stopped>> {
     let model = setup::model::<D>(scene);
-    let mut running = Running::new(scene, &model);
+    let mut course = Course::new(scene, &model);
     let mut march = || -> Result<(), BrokenDown> {
-        running.start(limit)?;
-        while let Some(moment) = running.advance()? {
+        course.start(limit)?;
+        while let Some(moment) = course.advance()? {
             match progress(moment.step) {
-                ControlFlow::Break(why) if !running.is_at_end() => return Err(why.at(moment)),
+                ControlFlow::Break(why) if !course.is_at_end() => return Err(why.at(moment)),
                 _ => {}
             }
         }
         Ok(())
     };
     match march() {
-        Ok(()) => Ok(running.outcome()),
-        Err(broken) => Err(Box::new(running.stopped(broken))),
+        Ok(()) => Ok(course.outcome()),
+        Err(broken) => Err(Box::new(course.stopped(broken))),
     }
 }

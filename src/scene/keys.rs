@@ -258,7 +258,7 @@ pub const KEYS: &[Key] = &[
     may(
         "initial_velocity.spin",
         One(any("rad/s")),
-        Without::Number(0.0),
+        Without::Says("none"),
         "ω, how fast it turns about the region's middle besides",
     )
     .besides("in 2D"),

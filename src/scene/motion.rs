@@ -163,7 +163,7 @@ fn region(values: &Values, entry: &str, body: &Body) -> Result<Region, Box<Scene
     }
     Ok(Region {
         velocity: values.axes(&format!("{entry}.velocity"))?,
-        spin: values.number(&spin)?,
+        spin: if values.has(&spin) { values.number(&spin)? } else { 0.0 },
         from: (0..values.dimension()).map(|d| from[d] - body.origin[d]).collect(),
         to: (0..values.dimension())
             // The body's own corner, to the last bit, where the region ends with it.

@@ -174,6 +174,7 @@
       $(name).setAttribute("aria-valuetext", s[name]);
     }
     for (const name of [...LAB.selects, "field", "colour"]) $(name).value = s[name];
+    lab.querySelector(".lab-thrown").hidden = s.motion !== "thrown";
     $("blowup").checked = s.blowup;
     $("x").value = s.x * 480;
     const showRow = (name, on) => ($(name).closest(".lab-row").hidden = !on);

@@ -72,8 +72,8 @@ LAB.shape = (() => {
     picture.cursor(cells[place]);
     picture.dots([cells[place]], [f[place]], css("--fg"), 4);
     const jumps = largest > 0.3 * most;
-    $("force-words").textContent = `With the particle at x_p/h = ${LAB.round(cells[place])} the force is ${LAB.round(f[place])} N on each square metre. ` + (jumps
-      ? `At x_p/h = ${Math.round(cells[at])} it jumps from ${LAB.round(f[at - 1])} N to ${LAB.round(f[at])} N: a particle that crosses this face kicks the node.`
+    $("force-words").textContent = `With the particle at x_p/h = ${LAB.round(cells[place])} the force is ${LAB.pen.label(LAB.round(f[place]))} N on each square metre. ` + (jumps
+      ? `At x_p/h = ${Math.round(cells[at])} it jumps from ${LAB.pen.label(LAB.round(f[at - 1]))} N to ${LAB.pen.label(LAB.round(f[at]))} N: a particle that crosses this face kicks the node.`
       : `No jump: it changes by ${LAB.round(largest)} N at most over a sixtieth of a cell.`);
   }
   return { ask, draw };

@@ -56,7 +56,7 @@ LAB.steps = (() => {
     const { pre, all, of } = listing();
     all.forEach((line, n) => line.classList.toggle("lab-lit", step > 0 && of[n] === step));
     const first = all[Math.max(0, of.indexOf(step))];
-    pre.scrollTop = Math.max(0, first.offsetTop - pre.offsetTop - 40);
+    pre.scrollTop = Math.max(0, first.offsetTop - 40);
   }
 
   // The values after this step; what it has changed stands out.

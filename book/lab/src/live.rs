@@ -5,7 +5,7 @@ use crate::bar::Request;
 use lme_mpm::method::breakdown::BrokenDown;
 use lme_mpm::method::model::Model;
 use lme_mpm::output::summary;
-use lme_mpm::run::Running;
+use lme_mpm::run::Course;
 use lme_mpm::run::stability::{Critical, runnable};
 use lme_mpm::run::table::Table;
 use lme_mpm::scene::Scene;
@@ -74,7 +74,7 @@ fn live(scene: Scene, limit: Option<Critical>, every: usize) -> Box<dyn Live> {
 
 /// A run with the scene and the model that it borrows, which are given back after it.
 struct Run<const D: usize> {
-    running: ManuallyDrop<Running<'static, D>>,
+    course: ManuallyDrop<Course<'static, D>>,
     scene: *mut Scene,
     model: *mut Model<D>,
     limit: Option<Critical>,
@@ -92,25 +92,25 @@ impl<const D: usize> Run<D> {
         let model = Box::into_raw(Box::new(setup::model::<D>(&scene)));
         let scene = Box::into_raw(Box::new(scene));
         // SAFETY: both live until `drop`, which lets the run go first.
-        let running = ManuallyDrop::new(Running::new(unsafe { &*scene }, unsafe { &*model }));
-        Run { running, scene, model, limit, every, step: None, told: 0, finished: false }
+        let course = ManuallyDrop::new(Course::new(unsafe { &*scene }, unsafe { &*model }));
+        Run { course, scene, model, limit, every, step: None, told: 0, finished: false }
     }
 
     /// Takes up to `steps` steps and keeps the moments among them; true at the end.
     fn march(&mut self, steps: usize, seen: &mut Seen) -> Result<bool, BrokenDown> {
         if self.step.is_none() {
-            self.running.start(self.limit.take())?;
+            self.course.start(self.limit.take())?;
             self.step = Some(0);
             seen.keep(0.0, self);
         }
         for _ in 0..steps {
-            let Some(moment) = self.running.advance()? else { break };
+            let Some(moment) = self.course.advance()? else { break };
             self.step = Some(moment.step);
-            if moment.step.is_multiple_of(self.every) || self.running.is_at_end() {
+            if moment.step.is_multiple_of(self.every) || self.course.is_at_end() {
                 seen.keep(moment.time, self);
             }
         }
-        Ok(self.running.is_at_end())
+        Ok(self.course.is_at_end())
     }
 
     /// Adds the rows of the history that the page does not have yet.
@@ -128,10 +128,10 @@ impl<const D: usize> Run<D> {
     }
 
     /// Takes the run out, to be made into what has come of it.
-    fn taken(&mut self) -> Running<'static, D> {
+    fn taken(&mut self) -> Course<'static, D> {
         self.finished = true;
         // SAFETY: it is taken once, for `finished` is set and asked for.
-        unsafe { ManuallyDrop::take(&mut self.running) }
+        unsafe { ManuallyDrop::take(&mut self.course) }
     }
 }
 
@@ -149,7 +149,7 @@ impl Seen {
         self.t.push(t);
         // SAFETY: the scene lives as long as the run.
         let origin = unsafe { &(*run.scene).body.origin };
-        let particle = &run.running.state.particle;
+        let particle = &run.course.state.particle;
         for p in 0..particle.len() {
             self.particles.extend((0..D).map(|i| origin[i] + particle.x[p][i]));
             self.particles.extend(particle.u[p].iter());
@@ -172,7 +172,7 @@ impl<const D: usize> Live for Run<D> {
         answer.numbers("particles", seen.particles);
         match done {
             Ok(false) => {
-                let history = self.running.history().clone();
+                let history = self.course.history().clone();
                 self.tell(&mut answer, &history);
             }
             Ok(true) => {
@@ -210,7 +210,7 @@ impl<const D: usize> Drop for Run<D> {
         // SAFETY: what borrows goes first, and all three are given back once.
         unsafe {
             if !self.finished {
-                ManuallyDrop::drop(&mut self.running);
+                ManuallyDrop::drop(&mut self.course);
             }
             drop(Box::from_raw(self.model));
             drop(Box::from_raw(self.scene));

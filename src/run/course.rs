@@ -1,4 +1,4 @@
-//! A run under way can be taken on step by step.
+//! The course of a run can be taken on step by step.
 
 use super::guards::Guards;
 use super::outcome::{Outcome, Stopped};
@@ -12,8 +12,8 @@ use crate::method::time;
 use crate::scene::Scene;
 use crate::setup;
 
-/// A run under way has a state, what it has recorded so far, and what guards it.
-pub struct Running<'a, const D: usize> {
+/// The course of a run has a state, what it has recorded so far, and what guards it.
+pub struct Course<'a, const D: usize> {
     /// The state after the last finished step.
     pub state: State<D>,
     scene: &'a Scene,
@@ -24,12 +24,12 @@ pub struct Running<'a, const D: usize> {
     step: usize,
 }
 
-impl<'a, const D: usize> Running<'a, D> {
+impl<'a, const D: usize> Course<'a, D> {
     /// Makes a run of `scene`, whose model is `model`, before its first step.
     pub fn new(scene: &'a Scene, model: &'a Model<D>) -> Self {
         let state = setup::initial_state(model, scene);
         let recorder = Recorder::new(scene, model, &state);
-        Running { state, scene, model, recorder, guards: None, step: 0 }
+        Course { state, scene, model, recorder, guards: None, step: 0 }
     }
 
     /// Prepares the scheme and records the start; the limit of Δt may be known, so that the watch
@@ -78,7 +78,7 @@ impl<'a, const D: usize> Running<'a, D> {
 
     /// Gives what has come out of it.
     pub fn outcome(self) -> Outcome {
-        let Running { state, model, recorder, guards, .. } = self;
+        let Course { state, model, recorder, guards, .. } = self;
         let bytes_per_particle = model.bytes_per_particle() as u64;
         let limit_applications = guards.as_ref().map_or(0, Guards::limit_applications);
         Outcome {
