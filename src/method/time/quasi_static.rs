@@ -1,8 +1,8 @@
 //! Equilibrium without inertia: the loads grow in steps, and in each the nodal displacements are
 //! solved for.
 //!
-//! Source: Coombs and Augarde, *AMPLE: A Material Point Learning Environment* (2020), from whose
-//! column the shipped scene is taken.
+//! Sources: Charlton, Coombs and Augarde, *iGIMP* (2017); Coombs and Augarde, *AMPLE: A Material
+//! Point Learning Environment* (2020), from whose column the shipped scene is taken.
 
 use super::equilibrium::balance;
 use super::steps::*;
