@@ -39,7 +39,7 @@ function program(folder, args, env = {}, engine = []) {
 const PROCESSORS = {
   i686: { triple: "i686-unknown-linux-musl", linker: "rust-lld", words: "32 bits" },
   aarch64: { triple: "aarch64-unknown-linux-musl", linker: "rust-lld", engine: "qemu-aarch64", words: "64 bits" },
-  s390x: { triple: "s390x-unknown-linux-gnu", linker: "s390x-linux-gnu-gcc", engine: "qemu-s390x", flags: "-C target-feature=+crt-static", words: "64 bits, the largest byte first" },
+  s390x: { triple: "s390x-unknown-linux-gnu", linker: "s390x-linux-gnu-gcc", engine: "qemu-s390x", flags: "-C target-feature=+crt-static", words: "64 bits with the largest byte first" },
 };
 function processor(name) {
   const { triple, linker, engine, flags, words } = PROCESSORS[name];
