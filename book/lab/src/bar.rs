@@ -5,6 +5,7 @@ use lme_mpm::method::basis::scattered::{Places, fill_from_nodes};
 use lme_mpm::method::basis::{Extents, Scratch, fill_from_grid};
 use lme_mpm::method::continuum::shape::Shape;
 use lme_mpm::method::continuum::state::Multiplier;
+use lme_mpm::method::exact::Exact;
 use lme_mpm::run::parse;
 use lme_mpm::run::stability::{Critical, critical};
 use lme_mpm::scene::Scene;
@@ -86,16 +87,21 @@ pub fn moment(request: &Request) -> Answer {
     fields(request, |_| vec![request.number])
 }
 
+/// Gives the scene of a bar and its exact solution, or the answer that says why there is none.
+fn solved(request: &Request) -> Result<(Scene, Exact<1>), Answer> {
+    let scene = request.parsed().map_err(Answer::error)?;
+    if scene.dimension() != 1 {
+        return Err(Answer::error("exact fields are drawn along one axis"));
+    }
+    let exact = setup::exact::<1>(&scene).map_err(Answer::error)?;
+    Ok((scene, exact))
+}
+
 /// Answers the exact fields of a bar at these moments.
 fn fields(request: &Request, moments: impl Fn(&Scene) -> Vec<f64>) -> Answer {
-    let scene = match request.parsed() {
-        Ok(scene) if scene.dimension() == 1 => scene,
-        Ok(_) => return Answer::error("exact fields are drawn along one axis"),
-        Err(error) => return Answer::error(error),
-    };
-    let exact = match setup::exact::<1>(&scene) {
-        Ok(exact) => exact,
-        Err(fault) => return Answer::error(fault),
+    let (scene, exact) = match solved(request) {
+        Ok(both) => both,
+        Err(answer) => return answer,
     };
     let (length, origin) = (scene.body.length[0], scene.body.origin[0]);
     let mut fields = Vec::new();
@@ -114,14 +120,9 @@ fn fields(request: &Request, moments: impl Fn(&Scene) -> Vec<f64>) -> Answer {
 /// Answers what the exact solution is at one material point (m), the request's number, at
 /// [`SAMPLES`] moments from the start to the end: t (s), v (m/s), σ (Pa) and u (m).
 pub fn point(request: &Request) -> Answer {
-    let scene = match request.parsed() {
-        Ok(scene) if scene.dimension() == 1 => scene,
-        Ok(_) => return Answer::error("exact fields are drawn along one axis"),
-        Err(error) => return Answer::error(error),
-    };
-    let exact = match setup::exact::<1>(&scene) {
-        Ok(exact) => exact,
-        Err(fault) => return Answer::error(fault),
+    let (scene, exact) = match solved(request) {
+        Ok(both) => both,
+        Err(answer) => return answer,
     };
     let mut answer = Answer::default();
     let moments = 0..4 * SAMPLES;

@@ -95,6 +95,13 @@ impl<const D: usize> Equilibrium<D> {
         }
     }
 
+    /// Makes room for the tangent of this table of shape functions, once for all iterations of a step.
+    pub fn fit(&mut self, shape: &Shape<D>, nodes: usize) {
+        if !self.covers(shape) {
+            self.couple(shape, nodes);
+        }
+    }
+
     // ANCHOR: residual
     /// Takes G_p = Σ_I u_I ⊗ ∇N_Ip (–) and sums up f_I^int = −Σ_p V_p P_p ∇N_Ip (N), with V_p and
     /// ∇N_Ip of the beginning of the step; `m` is m_I (kg).
@@ -138,9 +145,6 @@ impl<const D: usize> Equilibrium<D> {
         material: &Elastic,
         (mass, per_u): (&MassMatrix<D>, f64),
     ) {
-        if !self.covers(shape) {
-            self.couple(shape, m.len());
-        }
         self.values.fill(0.0);
         for p in 0..particle.len() {
             gradients(&mut self.row, shape, m, p);

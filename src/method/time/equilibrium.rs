@@ -55,7 +55,7 @@ pub fn balance<const D: usize>(
 }
 // ANCHOR_END: balance
 
-/// Takes the loads of time `t` (s) (N).
+/// Takes the loads of time `t` (s) (N), and makes room for the tangent.
 fn load<const D: usize>(state: &mut State<D>, model: &Model<D>, t: f64) {
     let State { particle, node, shape, equilibrium, .. } = state;
     node.f.fill(SVector::zeros());
@@ -64,6 +64,7 @@ fn load<const D: usize>(state: &mut State<D>, model: &Model<D>, t: f64) {
     }
     if let Some(system) = equilibrium {
         system.loads.copy_from_slice(&node.f);
+        system.fit(shape, node.len());
     }
 }
 
