@@ -32,7 +32,7 @@ LAB.motions = {
 
 LAB.presets = {
   dispersion: {
-    name: "Dispersion", set: {}, link: ["dyka-bar.html#what-came-out", "The bar with the linear basis"],
+    name: "Dispersion", set: {}, link: ["linear.html#first-disease-dispersion", "The linear basis and its two diseases"],
     words: "A front is a jump, and the grid carries its short waves more slowly than its long ones. So a train of waves trails behind every front, and gets longer with every way through the bar.",
   },
   lumping: {
