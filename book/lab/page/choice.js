@@ -60,7 +60,7 @@ LAB.presets = {
     words: "Local max-ent reaches a node beyond the free end, which sees the body from afar only: in the consistent matrix its diagonal is a small part of its mass, and its own frequency would bound the time step. Such nodes are lumped, so the limit on the slider stays where the rest of the bar has it.",
   },
   otm: {
-    name: "OTM at Courant one", set: { method: "otm", ppc: 1, cfl: 1 }, link: ["otm.html#exercise", "OTM: nodes that move"],
+    name: "OTM at Courant one", set: { method: "otm", ppc: 1, cfl: 1 }, link: ["otm.html#what-came-out", "OTM: nodes that move"],
     words: "With the linear basis and one point in a cell OTM is linear finite elements, and at a Courant number of one the central difference is exact in one dimension. Displacements are right to five digits and fronts as sharp as the grid; take a tenth off the Courant number, and waves trail behind them again.",
   },
   rotation: {
