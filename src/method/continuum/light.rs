@@ -105,26 +105,29 @@ impl<const D: usize> Light<D> {
         }
     }
 
-    /// Says how much of the pair I, J goes to the diagonal, over m_p N_Ip (–).
+    /// Says how much of the pair I, J goes to the diagonal: to m_II over m_p N_Ip, and to m_JJ
+    /// over m_p N_Jp (–), which is as much; `None` for nothing.
     ///
     /// With a node that stands alone it is N_Jp, all of it. Two nodes on one line along an axis
     /// d, one of them light along it, are tied by N_dJp: in 1D that is all of the pair, and
     /// else more, since it stands for the pairs of I with all nodes that share J's place along
     /// d. A tie does not feel a velocity that is constant along its axis. m_p N_Ip N_dJp is the
     /// same from J's side. A node that is light along d has m_II ≥ m_I − m_dI > ¾ m_I then.
-    #[inline]
-    pub fn diagonal_share(&self, I: &Sight<D>, J: &Sight<D>) -> f64 {
+    #[inline(always)]
+    pub fn diagonal_shares(&self, I: &Sight<D>, J: &Sight<D>) -> Option<[f64; 2]> {
         if !(self.any[I.I] || self.any[J.I]) || I.I == J.I {
-            return 0.0;
+            return None;
         }
-        let mut share = if self.alone[I.I] || self.alone[J.I] { J.N } else { 0.0 };
+        let is_alone = self.alone[I.I] || self.alone[J.I];
+        let mut shares = if is_alone { [J.N, I.N] } else { [0.0; 2] };
         let mut apart = (0..D).filter(|d| I.at[*d] != J.at[*d]);
         if let (Some(d), None) = (apart.next(), apart.next())
             && (self.along[I.I][d] || self.along[J.I][d])
         {
-            share += J.factor[d];
+            shares[0] += J.factor[d];
+            shares[1] += I.factor[d];
         }
-        share
+        Some(shares)
     }
     // ANCHOR_END: light
 }

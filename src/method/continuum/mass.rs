@@ -50,13 +50,19 @@ impl<const D: usize> MassMatrix<D> {
         }
     }
 
-    /// Shows `each` the entries (I, J, m_IJ) (kg), column by column.
+    /// Shows `each` the entries (I, J, m_IJ) (kg), column by column; m_JI follows m_IJ.
     pub fn entries(&self, m: &[f64], mut each: impl FnMut(usize, usize, f64)) {
         match self {
             MassMatrix::Lumped => (0..m.len()).for_each(|I| each(I, I, m[I])),
             MassMatrix::Consistent(mass) => {
-                let entries = mass.pattern.entries().zip(&mass.values);
-                entries.for_each(|((J, I), m_IJ)| each(I, J, *m_IJ));
+                for ((J, I), m_IJ) in mass.pattern.entries().zip(&mass.values) {
+                    if I >= J {
+                        each(I, J, *m_IJ);
+                    }
+                    if I > J {
+                        each(J, I, *m_IJ);
+                    }
+                }
             }
         }
     }
@@ -75,9 +81,11 @@ impl<const D: usize> MassMatrix<D> {
 pub struct ConsistentMass<const D: usize> {
     /// Which nodes share a particle; every node shares one with itself.
     pattern: SparsityPattern,
-    /// m_IJ (kg), column by column.
+    /// m_IJ with I ≥ J (kg), column by column; above the diagonal, where m_IJ = m_JI, is 0.
     values: Vec<f64>,
-    /// The same with the equations of fixed nodes taken out.
+    /// The place of m_II among them.
+    diagonal: Vec<usize>,
+    /// The same with the equations of fixed nodes taken out; the factors need no more.
     held: Vec<f64>,
     /// Which nodes are light along which axes.
     light: Light<D>,
@@ -115,6 +123,7 @@ impl<const D: usize> ConsistentMass<D> {
         ConsistentMass {
             pattern: SparsityPattern::zeros(nodes, nodes),
             values: Vec::new(),
+            diagonal: Vec::new(),
             held: Vec::new(),
             light: Light::blank(nodes),
             row: Vec::new(),
@@ -152,29 +161,31 @@ impl<const D: usize> ConsistentMass<D> {
     }
 
     /// Sums over all pairs of nodes of each particle; false where the pattern lacks one. The
-    /// shares of a pair that [`Light`] lumps and ties go to the diagonal.
+    /// matrix is symmetric, so pairs with I ≥ J suffice. The shares of a pair that [`Light`] lumps
+    /// and ties go to the diagonal.
     ///
     /// Each such share k ≥ 0 adds ½ k (v_I − v_J)² to ½ vᵀmv, so the matrix keeps its symmetry
     /// and row sums, and vᵀmv is at least that of (13); it is at most 1 + D times that of the
     /// lumped matrix. Tests: `mass_with_light_nodes_keeps_its_promises`, `strip_is_the_bar`.
     fn sum(&mut self, particle: &Particles<D>, shape: &Shape<D>) -> bool {
         self.values.fill(0.0);
+        if self.diagonal.is_empty() {
+            return false;
+        }
         for p in 0..particle.len() {
+            let m_p = particle.m[p];
             look(&mut self.row, shape, p);
             for J in &self.row {
                 // Most nodes of a row stand in column J one after the other.
-                let mut next = self.pattern.major_offsets()[J.I];
-                for I in &self.row {
+                let mut next = self.diagonal[J.I];
+                for I in self.row.iter().filter(|I| I.I >= J.I) {
                     let Some(k) = place_from(next, &self.pattern, I.I, J.I) else { return false };
                     next = k + 1;
-                    let m_IJ = I.N * particle.m[p] * J.N;
-                    let share = I.N * particle.m[p] * self.light.diagonal_share(I, J);
-                    self.values[k] += m_IJ;
-                    if share > 0.0
-                        && let Some(own) = place(&self.pattern, I.I, I.I)
-                    {
-                        self.values[k] -= share;
-                        self.values[own] += share;
+                    self.values[k] += I.N * m_p * J.N;
+                    if let Some([of_I, of_J]) = self.light.diagonal_shares(I, J) {
+                        self.values[k] -= I.N * m_p * of_I;
+                        self.values[self.diagonal[I.I]] += I.N * m_p * of_I;
+                        self.values[self.diagonal[J.I]] += J.N * m_p * of_J;
                     }
                 }
             }
@@ -188,6 +199,7 @@ impl<const D: usize> ConsistentMass<D> {
     fn couple(&mut self, shape: &Shape<D>, nodes: usize) {
         self.pattern = coupled(shape, nodes);
         self.values = vec![0.0; self.pattern.nnz()];
+        self.diagonal = (0..nodes).filter_map(|I| place(&self.pattern, I, I)).collect();
         self.held = vec![0.0; self.pattern.nnz()];
         for system in &mut self.systems {
             system.factor = None;
@@ -201,7 +213,7 @@ impl<const D: usize> ConsistentMass<D> {
         let alone = |I: usize| system.fixed[I] || m[I] == 0.0;
         let (offsets, rows) = (self.pattern.major_offsets(), self.pattern.minor_indices());
         for J in 0..m.len() {
-            for k in offsets[J]..offsets[J + 1] {
+            for k in self.diagonal[J]..offsets[J + 1] {
                 let I = rows[k];
                 let single = if I == J { 1.0 } else { 0.0 };
                 self.held[k] = if alone(I) || alone(J) { single } else { self.values[k] };

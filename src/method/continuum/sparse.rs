@@ -47,6 +47,7 @@ pub fn place(pattern: &SparsityPattern, I: usize, J: usize) -> Option<usize> {
 
 /// Finds the place of the entry (I, J) among the values of a matrix with this pattern, which may
 /// be `next`.
+#[inline(always)]
 pub fn place_from(next: usize, pattern: &SparsityPattern, I: usize, J: usize) -> Option<usize> {
     let is_next = next < pattern.major_offsets()[J + 1] && pattern.minor_indices()[next] == I;
     if is_next { Some(next) } else { place(pattern, I, J) }
