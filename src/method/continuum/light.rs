@@ -42,10 +42,13 @@ pub fn look<const D: usize>(row: &mut Vec<Sight<D>>, shape: &Shape<D>, p: usize)
     row.clear();
     match shape.axes(p) {
         Some(axes) => {
-            for (at, (I, N, _)) in odometer(axes.map(<[_]>::len)).zip(shape.of(p)) {
-                let factor = std::array::from_fn(|d| axes[d][at[d]].N);
-                row.push(Sight { I, N, factor, at });
-            }
+            let mut places = odometer(axes.map(<[_]>::len));
+            shape.lines(p, |line| {
+                for ((I, N, _), at) in line.entries().zip(&mut places) {
+                    let factor = std::array::from_fn(|d| axes[d][at[d]].N);
+                    row.push(Sight { I, N, factor, at });
+                }
+            });
         }
         None => {
             for (I, N, _) in shape.of(p) {
