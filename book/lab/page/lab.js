@@ -9,7 +9,7 @@
   const percent = (x) => (x >= 10 ? Math.round(x) + " times" : 100 * x < 0.01 ? (100 * x).toExponential(1) : (100 * x).toPrecision(3)) + (x >= 10 ? "" : " %");
   const began = performance.now();
   // What is shown, what is being computed, and which of its moments is shown.
-  let seen = null, coming = null, frame = 0, playing = false, isHeld = false;
+  let seen = null, coming = null, frame = 0, playing = false, isHeld = false, isEarly = false;
 
   // For whoever looks on: what is shown.
   LAB.shown = () => ({ run: seen, frame });
@@ -18,6 +18,8 @@
 
   // A run that takes longer than this is shown while it is computed (ms).
   const PATIENCE = 150;
+  // After this it is shown as soon as it has passed the moment that is looked at (ms).
+  const HASTE = 20;
   // So many numbers of particles are kept at most.
   const KEPT = 8e6;
 
@@ -25,7 +27,7 @@
     const s = LAB.state, run = new LAB.Run();
     $("command").textContent = LAB.command();
     coming = run;
-    isHeld = false;
+    isHeld = isEarly = false;
     const particles = (s.cells * s.ppc) ** (run.plane ? 2 : 1);
     const moments = Math.max(20, Math.min(160, Math.floor(KEPT / (7 * particles))));
     LAB.program.begin(moments, LAB.motion().scene, LAB.sets(), (parts) => { run.hear(parts); heard(run); });
@@ -37,8 +39,13 @@
   // Something new is known of the run that is coming.
   function heard(run) {
     if (run !== coming) return;
-    const isLong = performance.now() - run.began > PATIENCE || run.plane;
+    const age = performance.now() - run.began, isLong = age > PATIENCE || run.plane;
     if (run.done) finish(run);
+    else if (run !== seen && !isLong && age > HASTE && run.t[run.t.length - 1] > sought(run)) {
+      isEarly = true;
+      exchange(run);
+      draw();
+    }
     else if (run !== seen && isLong && run.t.length > 1) exchange(run);
     else if (run === seen) soon();
   }
@@ -51,22 +58,27 @@
     if (run.error) { lab.classList.toggle("lab-plane", LAB.plane()); return ready(); }
     const wasLive = run === seen;
     exchange(run);
-    if (wasLive && !isHeld && !playing) frame = run.t.length - 1;
+    if (wasLive && !isHeld && !isEarly && !playing) frame = run.t.length - 1;
     if (LAB.state.jump !== undefined && !(wasLive && isHeld)) frame = Math.round(LAB.state.jump * (run.t.length - 1));
     delete LAB.state.jump;
     figures();
     draw();
     ready();
   }
-  // Shows another run; at the end it stays at the end.
+  // The moment at which another run will be looked at; at the end it stays at the end.
+  function sought(run) {
+    if (LAB.state.jump !== undefined) return LAB.state.jump * run.end;
+    return !seen || frame >= seen.t.length - 1 ? Infinity : (seen.t[frame] / seen.end) * run.end;
+  }
+  // Shows another run.
   function exchange(run) {
     if (run !== seen) {
-      const wasAtEnd = !seen || frame >= seen.t.length - 1, time = seen && seen.t.length ? seen.t[frame] / seen.end : 0;
+      const time = sought(run);
       seen = run;
       lab.classList.toggle("lab-plane", run.plane);
       lab.classList.remove("lab-stale");
       $("error").textContent = run.error || (run.broken ? `the run broke down: ${run.broken}` : "");
-      frame = !run.t.length ? 0 : wasAtEnd || !run.done ? run.t.length - 1 : run.nearest(time * run.end);
+      frame = run.t.length ? run.nearest(time) : 0;
       fillProbes();
     }
     $("frame").max = Math.max(run.t.length - 1, 0);
@@ -99,7 +111,6 @@
   }
   function ready() {
     lab.dataset.done = Number(lab.dataset.done || 0) + 1;
-    if (seen) lab.dataset.took = (performance.now() - (seen.asked || seen.began)).toFixed(1);
     if (lab.dataset.ready === undefined) lab.dataset.ready = Math.round(performance.now() - began);
   }
 
@@ -131,7 +142,7 @@
     drawing = 0;
     if (!seen) return;
     const last = Math.max(seen.t.length - 1, 0);
-    if (seen === coming && !isHeld && !playing) frame = last;
+    if (seen === coming && !isHeld && !isEarly && !playing) frame = last;
     frame = Math.min(frame, last);
     $("frame").max = last;
     $("frame").value = frame;
@@ -144,6 +155,7 @@
     else { LAB.bar.along(seen, frame); LAB.bar.map(seen, frame); LAB.shape.draw(); }
     LAB.bar.probe(seen, frame);
     LAB.bar.energy(seen, frame);
+    if (seen.drawn === undefined) seen.drawn = performance.now() - seen.began;
   }
 
   // --- Controls --------------------------------------------------------------------------
