@@ -220,7 +220,7 @@ for (const region of ["0 0", "2.5 99", "0 198", "-2.5 99", "-5 0", "2.5 -99", "0
 // The force on a node jumps with the linear basis, and with no smooth one.
 const force = async (basis) => { await choose(page, "basis", basis); return say(page, "force-words"); };
 check(/it jumps from [-−]1 N to 1 N/.test(await say(page, "force-words")), await say(page, "force-words"));
-for (const basis of ["ugimp", "bspline", "lme"]) { const words = await force(basis); check(/No jump/.test(words), `${basis}: ${words}`); }
+for (const basis of ["ugimp", "bspline", "bspline3", "lme"]) { const words = await force(basis); check(/No jump/.test(words), `${basis}: ${words}`); }
 
 // Step through: nine steps, each with lines of the listing and with values.
 await preset(page, "dispersion");

@@ -116,6 +116,10 @@ LAB.bar = (() => {
     canvas.setAttribute("aria-valuenow", pointed(run));
     canvas.setAttribute("aria-valuemax", run.count - 1);
     canvas.setAttribute("aria-valuetext", `material point at ${LAB.round(material(run))} m, ${LAB.seconds(run.t[frame])}`);
+    const p = pointed(run), exact = LAB.exact.history(material(run)), MPa = (s) => LAB.round(s / 1e6) + 0;
+    let k = 0;
+    while (k < exact.t.length - 1 && exact.t[k] < run.t[frame]) k++;
+    $("point-words").textContent = `At the point: v = ${LAB.round(run.at("v", frame)[p])} m/s and σ = ${MPa(run.at("s", frame)[p])} MPa computed, ${LAB.round(exact.v[k]) + 0} m/s and ${MPa(exact.s[k])} MPa exact.`;
   }
 
   // What the picture of the probe shows: values, exact values, and a unit.
@@ -191,17 +195,21 @@ LAB.regions = (() => {
     return { of, regions };
   }
 
-  // Finds for each region the place nearest to its middle where a label of this size fits.
+  // Finds for each region the place nearest to its middle where a label fits, in one line or in two.
   function placed(field, wide, high) {
     const { rows, samples } = field, { of, regions } = numbered(field), out = [];
     for (const { places, v, s } of regions) {
       const mean = (f) => places.reduce((sum, at) => sum + f(at), 0) / places.length;
       const [middle, level] = [mean((at) => at % samples), mean((at) => Math.floor(at / samples))];
-      let best = null, least = Infinity;
-      for (const at of places) {
-        const [i, j] = [at % samples, Math.floor(at / samples)], far = ((i - middle) / samples) ** 2 + ((j - level) / rows) ** 2;
-        if (far < least && fits(of, of[at], i, j, wide, high, samples, rows)) [best, least] = [{ i, j, v, s }, far];
-      }
+      const nearest = (wide, high, lines) => {
+        let best = null, least = Infinity;
+        for (const at of places) {
+          const [i, j] = [at % samples, Math.floor(at / samples)], far = ((i - middle) / samples) ** 2 + ((j - level) / rows) ** 2;
+          if (far < least && fits(of, of[at], i, j, wide, high, samples, rows)) [best, least] = [{ i, j, v, s, lines }, far];
+        }
+        return best;
+      };
+      const best = nearest(wide, high, 1) || nearest(0.55 * wide, 1.9 * high, 2);
       if (best) out.push(best);
     }
     return out;
@@ -215,7 +223,7 @@ LAB.regions = (() => {
   }
 
   return function draw(pen, run, { left, top, half, bottom }) {
-    const field = LAB.exact.field(), text = ({ v, s }) => `${LAB.pen.label(LAB.round(v) + 0)}, ${LAB.pen.label(LAB.round(s / 1e6) + 0)}`;
+    const field = LAB.exact.field(), texts = ({ v, s }) => [LAB.round(v) + 0, LAB.round(s / 1e6) + 0].map(LAB.pen.label);
     const wide = (26 / half) * field.samples, high = (7 / (bottom - top)) * field.rows * (run.end / LAB.endOf(run));
     const asked = `${field.key} ${wide} ${high}`;
     if (key !== asked) [key, found] = [asked, placed(field, wide, high)];
@@ -223,7 +231,10 @@ LAB.regions = (() => {
     pen.font = "10.5px sans-serif"; pen.textAlign = "center"; pen.textBaseline = "middle";
     for (const region of found) {
       const x = left + (region.i / (field.samples - 1)) * half, t = (region.j / (field.rows - 1)) * LAB.endOf(run);
-      if (t <= run.end) pen.fillText(text(region), x, bottom - (t / run.end) * (bottom - top));
+      const y = bottom - (t / run.end) * (bottom - top), [v, s] = texts(region);
+      if (t > run.end) continue;
+      if (region.lines === 1) pen.fillText(`${v}, ${s}`, x, y);
+      else { pen.fillText(`${v},`, x, y - 6); pen.fillText(s, x, y + 6); }
     }
     pen.restore();
     return found;

@@ -109,14 +109,22 @@ LAB.setsOfGrid = function () {
   return out;
 };
 
+// The basis, where the scene that ships has another.
+LAB.setsOfBasis = function (shipped) {
+  const s = LAB.state, out = [], [kind, degree] = s.basis === "bspline3" ? ["bspline", 3] : [s.basis, 2];
+  if (kind !== shipped) out.push(`basis.kind=${kind}`);
+  if (degree === 3) out.push("basis.degree=3");
+  if (kind === "lme") out.push(`basis.gamma=${s.gamma}`);
+  else if (shipped === "lme") out.push("basis.gamma=");
+  return out;
+};
+
 // What is set beside the scene that ships, in the order of the controls.
 LAB.sets = function () {
   const s = LAB.state, shipped = LAB.motion(), out = [];
   const put = (key, value) => out.push(`${key}=${value}`);
   if (s.method !== "mpm") put("method", s.method);
-  if (s.basis !== shipped.basis) put("basis.kind", s.basis);
-  if (s.basis === "lme") put("basis.gamma", s.gamma);
-  else if (shipped.basis === "lme") put("basis.gamma", "");
+  out.push(...LAB.setsOfBasis(shipped.basis));
   if (s.mass !== "lumped") put("mass", s.mass);
   if (s.integrator !== "newmark") put("time.integrator", s.integrator);
   if (s.integrator === "forward-euler") put("time.stress_update", s.stress);

@@ -17,8 +17,7 @@ LAB.steps = (() => {
 
   // The bar has four cells, and the basis and the Courant number of the controls.
   function ask() {
-    const s = LAB.state, sets = ["grid.cells=4", `basis.kind=${s.basis}`, `time.cfl=${s.cfl}`];
-    if (s.basis === "lme") sets.push(`basis.gamma=${s.gamma}`);
+    const s = LAB.state, sets = ["grid.cells=4", ...LAB.setsOfBasis("linear"), `time.cfl=${s.cfl}`];
     const asked = `${k} ${sets}`;
     if (key === asked) return;
     key = asked;
