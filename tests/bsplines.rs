@@ -7,10 +7,8 @@ use lme_mpm::run::stability;
 use lme_mpm::scene::{DYKA, wave_speed};
 use std::fmt::Write;
 
-const DEGREES: [(&str, &[&str]); 2] = [
-    ("quadratic", &["basis.kind=bspline"]),
-    ("cubic", &["basis.kind=bspline", "basis.degree=cubic"]),
-];
+const DEGREES: [(&str, &[&str]); 2] =
+    [("quadratic", &["basis.kind=bspline"]), ("cubic", &["basis.kind=bspline", "basis.degree=3"])];
 
 /// The vibrating bar swings so little that no particle crosses a cell, and for a small part of its
 /// period, in small steps.

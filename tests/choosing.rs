@@ -106,7 +106,7 @@ const WAYS: [Way; 10] = [
     },
     Way {
         name: "cubic B-splines consistent",
-        line: "method=mpm mass=consistent basis.kind=bspline basis.degree=cubic time.integrator=newmark",
+        line: "method=mpm mass=consistent basis.kind=bspline basis.degree=3 time.integrator=newmark",
         node: true,
         per_cell: 2,
         cfl: 0.2,

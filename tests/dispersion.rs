@@ -25,7 +25,7 @@ const ROW_BASES: [(&str, Sets); 7] = [
     ("linear", &[]),
     ("uGIMP", &["basis.kind=ugimp"]),
     ("B-spline, quadratic", &["basis.kind=bspline"]),
-    ("B-spline, cubic", &["basis.kind=bspline", "basis.degree=cubic"]),
+    ("B-spline, cubic", &["basis.kind=bspline", "basis.degree=3"]),
     ("LME γ = 0.8", &["basis.kind=lme", "basis.gamma=0.8"]),
     ("LME γ = 1.8", &["basis.kind=lme", "basis.gamma=1.8"]),
     ("LME γ = 4", &["basis.kind=lme", "basis.gamma=4"]),

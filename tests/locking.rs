@@ -114,7 +114,7 @@ fn locking_of_a_cantilever() {
         ("linear with 1 per cell", &["basis.kind=linear", "grid.particles_per_cell=[1,1]"]),
         ("uGIMP", &["basis.kind=ugimp"]),
         ("B-spline", &["basis.kind=bspline"]),
-        ("cubic B-spline", &["basis.kind=bspline", "basis.degree=cubic"]),
+        ("cubic B-spline", &["basis.kind=bspline", "basis.degree=3"]),
         ("LME 0.8", &["basis.kind=lme", "basis.gamma=0.8"]),
         ("LME 1.8", &["basis.kind=lme", "basis.gamma=1.8"]),
         ("LME 4", &["basis.kind=lme", "basis.gamma=4"]),

@@ -330,7 +330,7 @@ pub struct ShapeArguments {
     /// scene; box without it
     #[arg(long, value_parser = support())]
     pub support: Option<Support>,
-    /// The degree of bspline, as basis.degree of a scene; quadratic without it
+    /// The degree of bspline, as basis.degree of a scene; 2 without it
     #[arg(long, value_parser = degree())]
     pub degree: Option<Degree>,
     /// Half the length of a particle of ugimp (m), at most H/2
@@ -358,10 +358,10 @@ fn support() -> impl TypedValueParser<Value = Support> {
         .map(|name| if name == "box" { Support::Box } else { Support::Ball })
 }
 
-/// Reads the name of a degree.
+/// Reads a degree.
 fn degree() -> impl TypedValueParser<Value = Degree> {
-    PossibleValuesParser::new(["quadratic", "cubic"])
-        .map(|name| if name == "cubic" { Degree::Cubic } else { Degree::Quadratic })
+    PossibleValuesParser::new(["2", "3"])
+        .map(|name| if name == "3" { Degree::Cubic } else { Degree::Quadratic })
 }
 
 /// Reads the name of the quantity whose error is asked for.

@@ -125,8 +125,8 @@ pub const KEYS: &[Key] = &[
     .besides("with the method \"otm\" \"lme\", in 1D also \"linear\""),
     may(
         "basis.degree",
-        Choice(&["quadratic", "cubic"]),
-        Without::Word("quadratic"),
+        One(whole(2.0, Included(3.0))),
+        Without::Number(2.0),
         "The degree of B-splines",
     )
     .with("basis.kind", "bspline"),

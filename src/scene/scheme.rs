@@ -87,9 +87,10 @@ pub fn basis(values: &Values, grid: &GridSpec) -> Result<Basis, Box<SceneError>>
         "linear" => Ok(Basis::Linear),
         "ugimp" => Ok(Basis::Ugimp { half_length: [half(0), half(1), half(2)] }),
         "gimp" => Ok(Basis::Gimp { half_length: [half(0), half(1), half(2)] }),
-        "bspline" => values
-            .choose("basis.degree", &[("quadratic", Degree::Quadratic), ("cubic", Degree::Cubic)])
-            .map(Basis::BSpline),
+        "bspline" => Ok(Basis::BSpline(match values.whole("basis.degree")? {
+            2 => Degree::Quadratic,
+            _ => Degree::Cubic,
+        })),
         "lme" => Ok(Basis::Lme {
             gamma: values.number("basis.gamma")?,
             cutoff: values.number("basis.cutoff")?,

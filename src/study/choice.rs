@@ -92,7 +92,7 @@ impl Choices {
             for basis in ["linear", "ugimp", "bspline", "lme basis.gamma=0.8", narrow] {
                 self.add("5", &mpm("lumped", basis), [n, 2], 0.5)?;
             }
-            let cubic = "bspline basis.degree=cubic";
+            let cubic = "bspline basis.degree=3";
             for basis in ["linear", "bspline", cubic, "lme basis.gamma=0.8", "lme basis.gamma=1.8"]
             {
                 self.add("5", &mpm("consistent", basis), [n, 2], 0.2)?;
