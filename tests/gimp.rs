@@ -112,11 +112,6 @@ fn gimp_names_the_domain_that_outgrows_its_grid() {
     assert!(with(-1.0).unwrap_err().to_string().contains("along axis 1"));
 }
 
-/// The motion across cells, 160 of them, with the changes `KEY=VALUE`.
-fn crossing(sets: &[&str]) -> Scene {
-    scene(&MANUFACTURED.replace("\"lme\"\ngamma = 0.8\n", "\"linear\"\n"), sets)
-}
-
 /// On the bar both have the same errors to 1%. Across cells, where the domains tile the body, those
 /// that stretch have less than a thirtieth of the errors of the others.
 #[test]

@@ -41,6 +41,7 @@ mod locking;
 mod mass;
 mod matrix;
 mod mistakes;
+mod null_space;
 mod one_bar;
 mod one_particle;
 mod orders;

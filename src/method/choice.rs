@@ -1,4 +1,4 @@
-//! A scene chooses from these closed sets: method, scheme, mass matrix.
+//! A scene chooses from these closed sets: method, scheme, law, filter, mass matrix.
 
 use super::reading::{NodalMass, StepEight, StressUpdate};
 
@@ -114,6 +114,13 @@ impl Law {
             Law::NeoHookean | Law::Hencky => true,
         }
     }
+}
+
+/// A filter takes something out of the stresses after each of their updates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filter {
+    /// What no node feels: each particle gets the mean of its cell.
+    NullSpace,
 }
 
 /// The nodes have one of two mass matrices.

@@ -1,7 +1,7 @@
 //! The model stays the same from step to step, and the state changes.
 
 use super::basis::{Basis, Scratch};
-use super::choice::{Mass, Method};
+use super::choice::{Filter, Mass, Method};
 use super::continuum::equilibrium::Equilibrium;
 use super::continuum::law::Elastic;
 use super::continuum::loads::Loads;
@@ -29,6 +29,8 @@ pub struct Model<const D: usize> {
     pub mass: Mass,
     /// Which map the strain of MPM is taken from; OTM has one.
     pub kinematics: Kinematics,
+    /// What is taken out of the stresses after each update; a scene may have no filter.
+    pub filter: Option<Filter>,
     /// Δt (s).
     pub dt: f64,
     /// N_t, the number of time steps.
@@ -137,6 +139,12 @@ impl<const D: usize> State<D> {
     pub fn cost(&self) -> Cost {
         let steps = Cost { steps: self.steps, ..Cost::default() };
         let solved = self.equilibrium.as_ref().map_or(Cost::default(), |system| system.cost);
-        steps + self.shape.cost + self.scratch.cost() + self.mass.cost() + self.node.cost + solved
+        steps
+            + self.shape.cost
+            + self.scratch.cost()
+            + self.mass.cost()
+            + self.node.cost
+            + self.particle.cost
+            + solved
     }
 }

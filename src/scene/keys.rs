@@ -81,6 +81,13 @@ pub const KEYS: &[Key] = &[
     )
     .with("method", "otm"),
     must("mass", Choice(&["lumped", "consistent"]), "The mass matrix of the nodes"),
+    may(
+        "filter",
+        Choice(&["none", "null-space"]),
+        Without::Word("none"),
+        "What is taken out of the stresses after each update: nothing, or what no node feels",
+    )
+    .besides("\"none\" with the method \"otm\", a hyperelastic law or an implicit integrator"),
     must("body", Table, "A box of elastic material"),
     must("body.length", PerAxis(positive("m")), "The size of the box, L in 1D")
         .besides("their number is the dimension, 1 to 3"),

@@ -1,7 +1,7 @@
 //! A scene is made of these parts, checked.
 
 use crate::method::basis::Basis;
-use crate::method::choice::{Law, Mass, Method};
+use crate::method::choice::{Filter, Law, Mass, Method};
 use crate::method::continuum::law::Elastic;
 use crate::method::exact::riemann::End;
 use crate::method::reading::Kinematics;
@@ -15,6 +15,7 @@ pub struct Scene {
     pub method: Method,
     pub mass: Mass,
     pub kinematics: Kinematics,
+    pub filter: Option<Filter>,
     pub body: Body,
     pub grid: GridSpec,
     pub basis: Basis,

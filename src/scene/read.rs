@@ -7,7 +7,7 @@ use super::loading::{body_force, traction};
 use super::motion::motion;
 use super::parts::*;
 use super::probes::probes;
-use super::scheme::{basis, integrator, kinematics, nodal_mass, otm, time};
+use super::scheme::{basis, filter, integrator, kinematics, nodal_mass, otm, time};
 use super::sizes::wave_speed;
 use super::source::Source;
 use super::values::{Values, counted};
@@ -87,6 +87,7 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         method,
         mass,
         kinematics: kinematics(values)?,
+        filter: filter(values)?,
         body,
         grid,
         basis,

@@ -5,7 +5,7 @@ use super::implicit::IMPLICIT;
 use super::parts::{GridSpec, Time};
 use super::values::Values;
 use crate::method::basis::{Basis, Degree, Support};
-use crate::method::choice::Integrator;
+use crate::method::choice::{Filter, Integrator};
 use crate::method::reading::{Kinematics, NodalMass, StepEight, StressUpdate};
 
 /// Reads the `time` table but for the integrator.
@@ -68,6 +68,28 @@ pub fn kinematics(values: &Values) -> Result<Kinematics, Box<SceneError>> {
     }
     let readings = [("as-printed", Kinematics::AsPrinted), ("consistent", Kinematics::Consistent)];
     values.choose("time.kinematics", &readings)
+}
+
+/// Reads what is taken out of the stresses, and refuses a filter where no stress would stay as it
+/// leaves it, or no cell has particles of its own.
+pub fn filter(values: &Values) -> Result<Option<Filter>, Box<SceneError>> {
+    let filters = [("none", None), ("null-space", Some(Filter::NullSpace))];
+    let filter = values.choose("filter", &filters)?;
+    let integrator = values.word("time.integrator")?;
+    let problem = if filter.is_none() {
+        return Ok(None);
+    } else if values.word("method")? == "otm" {
+        "with the method \"otm\" there is no cell that holds particles for a while"
+    } else if values.word("body.law")? != "rate" {
+        "the law takes the stress from the deformation gradient anew in each step"
+    } else if IMPLICIT.contains(&integrator) {
+        "an implicit integrator balances the stresses before the filter"
+    } else {
+        return Ok(filter);
+    };
+    let mut error = values.error("filter", problem);
+    error.allowed = "\"none\", or no such key".to_string();
+    Err(error)
 }
 
 /// Reads whether the nodes of OTM keep their masses.

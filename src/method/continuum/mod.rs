@@ -3,6 +3,7 @@
 //! the two.
 
 pub mod equilibrium;
+pub mod filter;
 pub mod hyperelastic;
 pub mod law;
 pub mod light;

@@ -41,6 +41,8 @@ pub struct Particles<const D: usize> {
     /// Sums of ½ (G_ji − G_ij), how far each particle has turned in each plane (rad); of the
     /// rate law in 2D and 3D only.
     pub turned: Vec<f64>,
+    /// The stresses that were filtered.
+    pub cost: Cost,
 }
 // ANCHOR_END: particles
 
@@ -131,6 +133,7 @@ impl<const D: usize> Particles<D> {
             F: Vec::new(),
             stretch: Vec::new(),
             turned: Vec::new(),
+            cost: Cost::default(),
         }
     }
 

@@ -4,6 +4,8 @@
 use super::deformation::deform;
 use crate::method::basis::{self, Extents, Scratch};
 use crate::method::breakdown::Breakdown;
+use crate::method::choice::Filter;
+use crate::method::continuum::filter::null_space;
 use crate::method::continuum::law::{self, Elastic};
 use crate::method::continuum::mass::MassMatrix;
 use crate::method::continuum::shape::Shape;
@@ -149,7 +151,8 @@ pub fn update_stress<const D: usize>(particle: &mut Particles<D>, law: &Elastic)
 }
 // ANCHOR_END: update_stress
 
-/// Step 6 as a whole: density and stress by (17) and (3) as printed, or at finite strain.
+/// Step 6 as a whole: density and stress by (17) and (3) as printed, or at finite strain; then
+/// the filter, where there is one.
 ///
 /// Errors: [`Breakdown::Inverted`], [`Breakdown::NotFinite`].
 pub fn update_material<const D: usize>(
@@ -157,10 +160,14 @@ pub fn update_material<const D: usize>(
     model: &Model<D>,
 ) -> Result<(), Breakdown> {
     if model.keeps_gradient() {
-        return deform(particle, &model.law);
+        deform(particle, &model.law)?;
+    } else {
+        update_density(particle)?; // (17)
+        update_stress(particle, &model.law); // (3)
     }
-    update_density(particle)?; // (17)
-    update_stress(particle, &model.law); // (3)
+    if let Some(Filter::NullSpace) = model.filter {
+        null_space(particle, &model.grid);
+    }
     Ok(())
 }
 
