@@ -12,6 +12,7 @@ mod cli;
 mod conformance;
 mod conservation;
 mod convergence;
+mod ddmp;
 mod dispersion;
 mod exact;
 mod extremes;

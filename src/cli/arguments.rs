@@ -350,6 +350,7 @@ pub enum BasisName {
     Ugimp,
     Lme,
     Bspline,
+    Ddmp,
 }
 
 /// Reads the name of a support.

@@ -138,6 +138,7 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
     let basis = match arguments.basis {
         BasisName::Linear => Basis::Linear,
         BasisName::Ugimp => Basis::Ugimp { half_length: [half; 3] },
+        BasisName::Ddmp => Basis::Ddmp,
         BasisName::Bspline => Basis::BSpline(arguments.degree.unwrap_or(Degree::Quadratic)),
         BasisName::Lme => Basis::Lme {
             gamma: arguments.gamma.unwrap_or(1.0),

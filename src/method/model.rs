@@ -51,8 +51,8 @@ impl<const D: usize> Model<D> {
     pub fn bytes_per_particle(&self) -> usize {
         let (vector, matrix) = (size_of::<SVector<f64, D>>(), size_of::<SMatrix<f64, D, D>>());
         let of_multiplier =
-            if self.basis.has_multiplier() { size_of::<Multiplier<D>>() } else { 0 };
-        let of_basis = of_multiplier + if self.basis.has_stretch() { vector } else { 0 };
+            if self.basis.traits().multiplier { size_of::<Multiplier<D>>() } else { 0 };
+        let of_basis = of_multiplier + if self.basis.traits().stretch { vector } else { 0 };
         let of_method = if self.method.needs().acceleration { vector } else { 0 }; // a_p
         let of_map = if self.keeps_gradient() { matrix } else { 0 }; // G_p
         let of_law = if self.law.law.is_hyperelastic() {
@@ -110,10 +110,10 @@ impl<const D: usize> State<D> {
         }
         particle.turned =
             vec![0.0; if hyperelastic { 0 } else { particles * Particles::<D>::PLANES }];
-        if model.basis.has_multiplier() {
+        if model.basis.traits().multiplier {
             particle.lambda = vec![Multiplier::default(); particles];
         }
-        if model.basis.has_stretch() {
+        if model.basis.traits().stretch {
             particle.stretch = vec![SVector::repeat(1.0); particles];
         }
         let mass = match model.mass {

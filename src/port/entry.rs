@@ -145,7 +145,7 @@ impl TraceRecorder {
             "N_Ip" => self.shapes(shape),
             "grad_N_Ip" => self.gradients(shape),
             "lambda" => {
-                let known = particle.lambda.iter().filter(|_| model.basis.has_multiplier());
+                let known = particle.lambda.iter().filter(|_| model.basis.traits().multiplier);
                 self.multipliers(known.map(|known| known.lambda), &model.grid.h);
             }
             "m_I" => self.numbers(symbol, &node.m),

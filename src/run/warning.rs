@@ -74,7 +74,7 @@ impl Warning {
             return None;
         }
         let from = match scene.basis {
-            Basis::Linear | Basis::Ugimp { .. } | Basis::Gimp { .. } => 0.45,
+            Basis::Linear | Basis::Ugimp { .. } | Basis::Gimp { .. } | Basis::Ddmp => 0.45,
             Basis::BSpline(_) => 0.499,
             Basis::Lme { gamma, .. } if gamma <= 1.0 => 0.499,
             Basis::Lme { gamma, .. } if gamma <= 4.0 && !scene.method.moves_nodes() => 0.49,

@@ -4,6 +4,7 @@
 
 use super::kind::Kind::{self, *};
 use super::kind::{Number, any, between, plain, positive, whole};
+use crate::method::basis::Basis;
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
 /// A key of a scene has a path, and all that is to be known about its value.
@@ -126,8 +127,8 @@ pub const KEYS: &[Key] = &[
     must("basis", Table, "The shape functions"),
     must(
         "basis.kind",
-        Choice(&["linear", "ugimp", "gimp", "lme", "bspline"]),
-        "Linear, uGIMP, GIMP whose domains stretch, local max-ent, B-splines",
+        Choice(&Basis::WORDS),
+        "Linear, uGIMP, GIMP whose domains stretch, local max-ent, B-splines, dual domain",
     )
     .besides("with the method \"otm\" \"lme\", in 1D also \"linear\""),
     may(

@@ -109,6 +109,7 @@ pub fn basis(values: &Values, grid: &GridSpec) -> Result<Basis, Box<SceneError>>
         "linear" => Ok(Basis::Linear),
         "ugimp" => Ok(Basis::Ugimp { half_length: [half(0), half(1), half(2)] }),
         "gimp" => Ok(Basis::Gimp { half_length: [half(0), half(1), half(2)] }),
+        "ddmp" => Ok(Basis::Ddmp),
         "bspline" => Ok(Basis::BSpline(match values.whole("basis.degree")? {
             2 => Degree::Quadratic,
             _ => Degree::Cubic,

@@ -50,7 +50,7 @@ impl Scene {
     pub fn pairs_per_particle(&self) -> f64 {
         let along = |d: usize| {
             let [before, after] = self.grid.beyond[d].map(|n| n as f64);
-            self.basis.most_along(before + self.grid.cells[d] as f64 + after + 1.0)
+            self.basis.traits().along.min(before + self.grid.cells[d] as f64 + after + 1.0)
         };
         (0..self.dimension()).map(along).product()
     }
@@ -59,7 +59,8 @@ impl Scene {
     /// the node for each pair; of a product N and its slope for each node along each axis.
     pub fn numbers_per_row(&self) -> f64 {
         let ball = matches!(self.basis, Basis::Lme { support: Support::Ball, .. });
-        match (ball && self.dimension() > 1) || self.method.moves_nodes() {
+        let listed = (ball && self.dimension() > 1) || self.basis == Basis::Ddmp;
+        match listed || self.method.moves_nodes() {
             true => (2.0 + self.dimension() as f64) * self.pairs_per_particle(),
             false => (0..self.dimension()).map(|d| 2.0 * self.coupled(d).0).sum(),
         }
@@ -71,7 +72,7 @@ impl Scene {
         let [before, after] = self.grid.beyond[d];
         let (cells, all) = (self.grid.cells[d] as f64, (before + after) as f64 + 1.0);
         let all = cells + all;
-        let along = libm::floor(self.basis.most_along(all)).min(all);
+        let along = libm::floor(self.basis.traits().along).min(all);
         (along, all.min(cells + along))
     }
 

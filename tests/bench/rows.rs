@@ -15,7 +15,7 @@ pub fn pairs_and_bytes<const D: usize>(state: &State<D>) -> (f64, f64) {
 /// step takes of the particle and leaves there, step by step.
 pub fn bytes_moved<const D: usize>(model: &Model<D>, bytes_of_row: f64) -> f64 {
     let (vector, matrix) = ((8 * D) as f64, (8 * D * D) as f64);
-    let multiplier = if model.basis.has_multiplier() { 3.0 * vector } else { 0.0 };
+    let multiplier = if model.basis.traits().multiplier { 3.0 * vector } else { 0.0 };
     let steps = [
         bytes_of_row + 5.0 * vector, // 1: a_p; x_p and v_p before and after
         bytes_of_row + vector + 2.0 * multiplier, // 2: x_p; λ_p before and after

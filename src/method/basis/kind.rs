@@ -28,6 +28,8 @@ pub enum Basis {
     },
     /// B-splines centred at the nodes.
     BSpline(Degree),
+    /// Linear functions with the gradients of the dual domain method.
+    Ddmp,
 }
 
 /// B-splines have one of two degrees.
@@ -49,44 +51,59 @@ pub enum Support {
     Ball,
 }
 
+/// What the rest of the program asks of a basis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Traits {
+    /// Each particle keeps a multiplier λ_p between tables.
+    pub multiplier: bool,
+    /// Each particle keeps its stretch along each axis.
+    pub stretch: bool,
+    /// A node that a particle has just touched counts at once, however small its mass, so that the
+    /// limit of Δt is also taken with all particles moved by a touch.
+    pub switches_nodes_on: bool,
+    /// |∇N|²/N has no bound, so that a node with hardly any mass may be pushed at any rate.
+    pub pushes_light_nodes: bool,
+    /// A particle sees at most so many nodes along an axis.
+    pub along: f64,
+}
+
+// ANCHOR: bases
 impl Basis {
+    /// The words of a scene, in the order of the book.
+    pub const WORDS: [&str; 6] = ["linear", "ugimp", "gimp", "lme", "bspline", "ddmp"];
+
+    /// Says in one line for each basis what the rest of the program must know of it.
+    pub fn traits(&self) -> Traits {
+        let smooth = Traits {
+            multiplier: false,
+            stretch: false,
+            switches_nodes_on: true,
+            pushes_light_nodes: false,
+            along: 3.0,
+        };
+        match self {
+            Basis::Linear => {
+                Traits { switches_nodes_on: false, pushes_light_nodes: true, along: 2.0, ..smooth }
+            }
+            Basis::Ugimp { .. } | Basis::BSpline(Degree::Quadratic) => smooth,
+            Basis::Gimp { .. } => Traits { stretch: true, along: 4.0, ..smooth },
+            Basis::BSpline(Degree::Cubic) => Traits { along: 4.0, ..smooth },
+            Basis::Lme { gamma, cutoff, .. } => Traits {
+                multiplier: true,
+                switches_nodes_on: false,
+                along: 2.0 * radius(*gamma, *cutoff) + 2.0,
+                ..smooth
+            },
+            Basis::Ddmp => Traits { pushes_light_nodes: true, along: 4.0, ..smooth },
+        }
+    }
+
     /// Gives the width of local max-ent; the functions of the other bases have none to choose.
     pub fn width(&self) -> Option<Width> {
         match self {
             Basis::Lme { gamma, cutoff, .. } => Some(Width::of(*gamma, *cutoff)),
-            Basis::Linear | Basis::Ugimp { .. } | Basis::Gimp { .. } | Basis::BSpline(_) => None,
-        }
-    }
-
-    /// Says whether each particle keeps a multiplier λ_p between tables.
-    pub fn has_multiplier(&self) -> bool {
-        match self {
-            Basis::Lme { .. } => true,
-            Basis::Linear | Basis::Ugimp { .. } | Basis::Gimp { .. } | Basis::BSpline(_) => false,
-        }
-    }
-
-    /// Says whether each particle keeps its stretch along each axis.
-    pub fn has_stretch(&self) -> bool {
-        matches!(self, Basis::Gimp { .. })
-    }
-
-    /// Says whether a node that a particle has just touched counts at once, however small
-    /// its mass, so that the limit of Δt is also taken with all particles moved by a touch.
-    pub fn switches_nodes_on(&self) -> bool {
-        match self {
-            Basis::Ugimp { .. } | Basis::Gimp { .. } | Basis::BSpline(_) => true,
-            Basis::Linear | Basis::Lme { .. } => false,
-        }
-    }
-
-    /// Bounds the nodes that a particle sees along an axis that has `nodes` of them.
-    pub fn most_along(&self, nodes: f64) -> f64 {
-        match self {
-            Basis::Linear => 2.0,
-            Basis::Ugimp { .. } | Basis::BSpline(Degree::Quadratic) => 3.0,
-            Basis::BSpline(Degree::Cubic) | Basis::Gimp { .. } => 4.0,
-            Basis::Lme { gamma, cutoff, .. } => (2.0 * radius(*gamma, *cutoff) + 2.0).min(nodes),
+            _ => None,
         }
     }
 }
+// ANCHOR_END: bases

@@ -2,6 +2,7 @@
 
 pub mod bins;
 pub mod bspline;
+pub mod ddmp;
 mod kind;
 pub mod linear;
 pub mod lme;
@@ -11,7 +12,7 @@ pub mod support;
 pub mod tensor;
 pub mod ugimp;
 
-pub use kind::{Basis, Degree, Support};
+pub use kind::{Basis, Degree, Support, Traits};
 pub use scratch::Scratch;
 
 use super::breakdown::Breakdown;
@@ -56,6 +57,9 @@ pub fn fill_from_grid<const D: usize>(
 ) -> Result<(), Breakdown> {
     shape.clear(grid.stride());
     let making = Making::of::<D>(basis);
+    if let Making::Ddmp = making {
+        scratch.duals.integrate(grid, particles.x);
+    }
     for (p, x_p) in particles.x.iter().enumerate() {
         let Some(at) = grid.locate(x_p) else {
             return Err(outside(p, x_p));
@@ -70,6 +74,7 @@ pub fn fill_from_grid<const D: usize>(
                 let axes = bspline::axes(degree, &at, grid);
                 shape.push_product(from_fn(|d| axes[d].factors()));
             }
+            Making::Ddmp => scratch.duals.push_row(shape, grid, &at),
             Making::Gimp(half_length) => {
                 let l = ugimp::stretched(p, half_length, particles.stretch)?;
                 let axes = ugimp::axes(&at, grid, l).ok_or_else(|| {
@@ -97,6 +102,7 @@ enum Making {
     Linear,
     Gimp([f64; 3]),
     BSpline(Degree),
+    Ddmp,
     Box(Width),
     Ball(Width),
 }
@@ -108,6 +114,7 @@ impl Making {
             Basis::Linear => Making::Linear,
             Basis::Ugimp { half_length } | Basis::Gimp { half_length } => Making::Gimp(half_length),
             Basis::BSpline(degree) => Making::BSpline(degree),
+            Basis::Ddmp => Making::Ddmp,
             Basis::Lme { gamma, cutoff, support } => match support {
                 Support::Ball if D > 1 => Making::Ball(Width::of(gamma, cutoff)),
                 Support::Ball | Support::Box => Making::Box(Width::of(gamma, cutoff)),

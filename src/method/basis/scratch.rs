@@ -1,11 +1,13 @@
 //! A basis keeps its working space from table to table, so that nothing is allocated anew.
 
 use super::bins::Bins;
+use super::ddmp::Duals;
 use super::lme::{AxisFunctions, Lme};
 use crate::method::continuum::shape::Shape;
 use crate::method::cost::Cost;
 
-/// This is the working space of local max-ent; the other bases need none.
+/// This is the working space of local max-ent and of the dual domain method; the other bases need
+/// none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scratch<const D: usize> {
     pub(super) lme: Lme<D>,
@@ -15,6 +17,7 @@ pub struct Scratch<const D: usize> {
     pub(super) axis_row: Shape<1>,
     /// Nodes that move, sorted for the search.
     pub(super) bins: Bins<D>,
+    pub(super) duals: Duals<D>,
     /// Candidates looked at so far.
     pub(super) cost: Cost,
 }
@@ -27,6 +30,7 @@ impl<const D: usize> Default for Scratch<D> {
             axis_lme: Lme::default(),
             axis_row: Shape::default(),
             bins: Bins::default(),
+            duals: Duals::default(),
             cost: Cost::default(),
         }
     }

@@ -49,7 +49,7 @@ impl OfScheme {
     pub fn fears_light_nodes(&self, basis: &Basis) -> bool {
         match self {
             OfScheme::One | OfScheme::Filtered | OfScheme::Unlimited => false,
-            OfScheme::Last | OfScheme::Alpha(_) => *basis == Basis::Linear,
+            OfScheme::Last | OfScheme::Alpha(_) => basis.traits().pushes_light_nodes,
         }
     }
 

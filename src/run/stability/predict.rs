@@ -225,7 +225,8 @@ pub fn touches<const D: usize>(
     offset: &Offset<D>,
 ) -> Result<Vec<Offset<D>>, Breakdown> {
     let filtered = OfScheme::of(model.method, model.kinematics) == OfScheme::Filtered;
-    let smooth = (filtered && model.mass == Mass::Lumped) || !model.basis.switches_nodes_on();
+    let smooth =
+        (filtered && model.mass == Mass::Lumped) || !model.basis.traits().switches_nodes_on;
     if smooth || model.method.moves_nodes() {
         return Ok(Vec::new());
     }
