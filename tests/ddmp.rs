@@ -169,11 +169,15 @@ fn ddmp_side_by_side() {
             let ratios = [v, sigma, u].into_iter().zip(expected).filter_map(|(a, b)| Some(a / b?));
             ratios.collect::<Vec<f64>>()
         };
+    let mut histories = String::from("mass,particles per cell,digest of the history\n");
     for (mass, n, cfl, expected) in bar {
         let sets = [&sets(mass, n, cfl)[..], &["grid.cells=80".to_string()]].concat();
         let scene = dyka(&strs(&sets));
         let u = over_time(&scene).unwrap().u;
-        let found = Each { u, ..bar_errors(&scene, &finished(&scene)) };
+        let outcome = finished(&scene);
+        let found = Each { u, ..bar_errors(&scene, &outcome) };
+        let all: Vec<f64> = outcome.history.rows().flatten().copied().collect();
+        writeln!(histories, "{mass},{n},{:016x}", digest(&all)).unwrap();
         let ratios = row("bar", mass, n, found, expected);
         assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 0.05), "{mass} {n}: {ratios:?}");
     }
@@ -184,6 +188,7 @@ fn ddmp_side_by_side() {
         assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 0.05), "{mass} {n}: {ratios:?}");
     }
     approve("ddmp__side_by_side", &table);
+    approve("ddmp__histories", &histories);
 }
 
 /// Across cells, in a motion whose amplitude is a sixteenth of the bar, the error in the velocity grows from 40 to

@@ -194,9 +194,9 @@ fn implicit_order_in_time() {
 #[test]
 fn implicit_on_the_bar() {
     let mut table = String::from(
-        "basis,mass,c Δt/h,velocity at L,stress at 3L/4,displacement,energy drift,iterations per step,\
-         digest\n",
+        "basis,mass,c Δt/h,velocity at L,stress at 3L/4,displacement,energy drift,iterations per step\n",
     );
+    let mut histories = String::from("basis,mass,c Δt/h,digest of the history\n");
     let mut row = |basis: &str, mass: MassCase, cfl: &str| {
         let scene =
             bar(&[mass.sets, &[&format!("basis.{basis}"), &format!("time.cfl={cfl}")]].concat());
@@ -210,11 +210,11 @@ fn implicit_on_the_bar() {
         let kind = basis.replace("kind=", "");
         writeln!(
             table,
-            "{kind},{},{cfl},{v:.3},{sigma:.3},{u:.4},{drift:.1e},{per_step:.2},{:016x}",
-            mass.name,
-            digest(&all)
+            "{kind},{},{cfl},{v:.3},{sigma:.3},{u:.4},{drift:.1e},{per_step:.2}",
+            mass.name
         )
         .unwrap();
+        writeln!(histories, "{kind},{},{cfl},{:016x}", mass.name, digest(&all)).unwrap();
         (v, sigma, drift)
     };
     let near = |(v, sigma, drift): (f64, f64, f64), expected: [f64; 3]| {
@@ -231,6 +231,7 @@ fn implicit_on_the_bar() {
     near(row("kind=linear", LUMPED, "2"), [0.137, 0.230, -0.0523]);
     near(row("kind=linear", LUMPED, "5"), [0.173, 0.308, -0.0636]);
     approve("implicit__bar", &table);
+    approve("implicit__histories", &histories);
 }
 
 /// Across cells, 160 of them, one cell per step, the errors over all particles and time are those

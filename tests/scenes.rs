@@ -152,7 +152,7 @@ fn scenes_defaults_are_what_is_read() {
         assert_eq!(scene(text, &[&set]), scene(text, &[]), "{set}");
         keys += 1;
     }
-    assert_eq!(keys, 19);
+    assert_eq!(keys, 20);
 }
 
 /// No column of a history but a probe's own can be a probe's name.

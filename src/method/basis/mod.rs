@@ -61,9 +61,7 @@ pub fn fill_from_grid<const D: usize>(
         scratch.duals.integrate(grid, particles.x);
     }
     for (p, x_p) in particles.x.iter().enumerate() {
-        let Some(at) = grid.locate(x_p) else {
-            return Err(outside(p, x_p));
-        };
+        let at = grid.locate(x_p).ok_or_else(|| outside(p, x_p))?;
         let no_basis = |failure| Breakdown::NoBasis { particle: p, failure };
         match making {
             Making::Linear => {
@@ -77,10 +75,7 @@ pub fn fill_from_grid<const D: usize>(
             Making::Ddmp => scratch.duals.push_row(shape, grid, &at),
             Making::Gimp(half_length) => {
                 let l = ugimp::stretched(p, half_length, particles.stretch)?;
-                let axes = ugimp::axes(&at, grid, l).ok_or_else(|| {
-                    let position = x_p.iter().copied().collect();
-                    Breakdown::ReachesBeyond { particle: p, position }
-                })?;
+                let axes = ugimp::axes(&at, grid, l).ok_or_else(|| beyond(p, x_p))?;
                 shape.push_product(from_fn(|d| axes[d].factors()));
             }
             Making::Box(width) => {
@@ -123,6 +118,11 @@ impl Making {
     }
 }
 // ANCHOR_END: tabulate
+
+/// Names a particle p at `x_p` (m) that reaches beyond the grid.
+fn beyond<const D: usize>(p: usize, x_p: &SVector<f64, D>) -> Breakdown {
+    Breakdown::ReachesBeyond { particle: p, position: x_p.iter().copied().collect() }
+}
 
 /// Names a particle p that stands at `x_p` (m) outside the grid, or has a place that is no
 /// number.
