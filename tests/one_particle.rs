@@ -294,8 +294,11 @@ fn one_particle_in_pictures() {
             "<g transform=\"translate({x} {y})\"><rect width=\"300\" height=\"238\" rx=\"6\" \
              fill=\"#fafafa\" stroke=\"#bbbbbb\"/>\n<text x=\"12\" y=\"26\" font-size=\"18\" \
              font-weight=\"bold\" fill=\"{INK}\">{title}</text>\n<text x=\"12\" y=\"45\" \
-             fill=\"#555555\">{steps}</text>\n{}</g>",
-            panel.0
+             fill=\"#555555\">{steps}</text>\n{}<rect class=\"turn\" style=\"animation-delay: {:.1}s\" \
+             width=\"300\" height=\"238\" rx=\"6\" fill=\"none\" stroke=\"{BLUE}\" \
+             stroke-width=\"4\"/>\n</g>",
+            panel.0,
+            1.0 + 1.2 * n as f64
         )
         .unwrap();
     }
@@ -308,9 +311,13 @@ fn one_particle_in_pictures() {
             )
         })
         .concat();
+    // A frame goes once through the panels, on a screen whose reader has nothing against it.
+    let turn = "<style>.turn { opacity: 0 } @keyframes turn { 0%, 85% { opacity: 1 } 100% { opacity: 0 } } \
+                @media screen and (prefers-reduced-motion: no-preference) \
+                { .turn { animation: turn 1.2s } }</style>";
     let svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"624\" height=\"500\" \
-         viewBox=\"0 0 624 500\" font-family=\"sans-serif\" font-size=\"16\">\n<defs>{tips}</defs>\n\
+         viewBox=\"0 0 624 500\" font-family=\"sans-serif\" font-size=\"16\">\n{turn}\n<defs>{tips}</defs>\n\
          <rect width=\"624\" height=\"500\" fill=\"#ffffff\"/>\n{body}</svg>\n"
     );
     approve_picture("one_particle__cycle", svg);

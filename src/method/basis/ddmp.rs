@@ -6,7 +6,6 @@ use crate::method::grid::{Grid, Located, odometer};
 use nalgebra::SVector;
 use std::array::from_fn;
 
-// ANCHOR: duals
 /// For each node J the dual gradients G_JI = V_J⁻¹ ∫ S_J ∇S_I dx (1/m) of its neighbours I, with
 /// V_J = ∫ S_J dx (m³) and S the linear functions. The integrals are over the cells that hold
 /// particles, so that no node without mass has a part in them.
@@ -23,6 +22,7 @@ pub struct Duals<const D: usize> {
 impl<const D: usize> Duals<D> {
     const NEIGHBOURS: usize = 3_usize.pow(D as u32);
 
+    // ANCHOR: duals
     /// Integrates over the cells in which particles stand at `x` (m).
     ///
     /// A cell adds Π_d h_d/2 to V_J of each corner, and to V_J G_JI along axis e
