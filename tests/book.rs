@@ -561,6 +561,31 @@ fn figures_and_tables_have_captions() {
     }
 }
 
+/// True where a caption of a figure says what is drawn, in a sentence, and then what to take away.
+fn says_what_to_take_away(caption: &str) -> bool {
+    let Some((drawn, taken)) = caption.split_once("What to take away: ") else { return false };
+    drawn.trim_end().ends_with(['.', ')']) && taken.len() > 20 && taken.ends_with(['.', ')'])
+}
+
+/// The caption of every figure says what is drawn, and ends in what the reader should take away.
+#[test]
+fn figures_say_what_to_take_away() {
+    let (mut count, mut without) = (0, Vec::new());
+    for (chapter, text) in chapters() {
+        for rest in text.split("{{#figure ").skip(1) {
+            let (name, caption) = rest.split("}}\n").next().unwrap().split_once(" | ").unwrap();
+            count += 1;
+            if !says_what_to_take_away(caption.trim()) {
+                without.push(format!("{chapter}: {name}: {caption}"));
+            }
+        }
+    }
+    assert!(without.is_empty(), "nothing to take away:\n{}", without.join("\n"));
+    assert!(count > 30, "{count}");
+    assert!(!says_what_to_take_away("The error against the number of cells. It falls."));
+    assert!(!says_what_to_take_away("The error against the number of cells. What to take away: "));
+}
+
 /// A table without a caption is seen, and one with a caption, or in code, is not taken for one.
 #[test]
 fn figures_and_tables_without_captions_are_seen() {

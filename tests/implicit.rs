@@ -213,13 +213,13 @@ fn over_time(scene: &Scene) -> Result<Each<f64>, Breakdown> {
 /// On the bar, 80 cells: with half a cell per step and the consistent matrix the velocity of the
 /// end is right to 0.110 and the stress to 0.196, and the energy stays to 1e-4; with the lumped
 /// matrix to 0.131 to 0.133 and 0.211, at a loss of 3.5%. Five cells per step still give 0.173. All
-/// to 1%. Histories are those of the digests.
+/// to 1%. Histories are those of the digests, which stand in a snapshot of their own.
 #[test]
 fn implicit_on_the_bar() {
     let mut table = String::from(
-        "basis,mass,c Δt/h,velocity at L,stress at 3L/4,displacement,energy drift,iterations per step,\
-         digest\n",
+        "basis,mass,c Δt/h,velocity at L,stress at 3L/4,displacement,energy drift,iterations per step\n",
     );
+    let mut digests = String::from("basis,mass,c Δt/h,digest\n");
     let mut row = |basis: &str, mass: MassCase, cfl: &str| {
         let scene =
             bar(&[mass.sets, &[&format!("basis.{basis}"), &format!("time.cfl={cfl}")]].concat());
@@ -231,13 +231,9 @@ fn implicit_on_the_bar() {
         assert!(column(&outcome.history, "equilibrium_residual").iter().all(|size| *size <= 1e-10));
         let all: Vec<f64> = outcome.history.rows().flatten().copied().collect();
         let kind = basis.replace("kind=", "");
-        writeln!(
-            table,
-            "{kind},{},{cfl},{v:.3},{sigma:.3},{u:.4},{drift:.1e},{per_step:.2},{:016x}",
-            mass.name,
-            digest(&all)
-        )
-        .unwrap();
+        let row = format!("{kind},{},{cfl}", mass.name);
+        writeln!(table, "{row},{v:.3},{sigma:.3},{u:.4},{drift:.1e},{per_step:.2}").unwrap();
+        writeln!(digests, "{row},{:016x}", digest(&all)).unwrap();
         (v, sigma, drift)
     };
     let near = |(v, sigma, drift): (f64, f64, f64), expected: [f64; 3]| {
@@ -254,6 +250,7 @@ fn implicit_on_the_bar() {
     near(row("kind=linear", LUMPED, "2"), [0.137, 0.230, -0.0523]);
     near(row("kind=linear", LUMPED, "5"), [0.173, 0.308, -0.0636]);
     approve("implicit__bar", &table);
+    approve("implicit__bar_digests", &digests);
 }
 
 /// Across cells, 160 of them, one cell per step, the errors over all particles and time are those
