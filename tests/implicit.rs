@@ -512,7 +512,7 @@ fn column_stress_along_it() {
 /// Where a load grows slowly, over a hundred transits of a wave, steps of forty cells, eighty times
 /// fewer than the explicit ones, have the displacement to half a percent: what they miss is the
 /// small vibration that the beginning of the load sets off. Where a wave is what matters that is not
-/// so: with five cells per step the bar that is thrown has more than twice the explicit error.
+/// so: with five cells per step the bar that is thrown has more than six times the explicit error.
 #[test]
 fn implicit_pays_for_slow_loads() {
     let mut table = String::from("motion,scheme,c Δt/h,steps,factorisations,displacement\n");
@@ -539,7 +539,7 @@ fn implicit_pays_for_slow_loads() {
     let small = row("thrown", "explicit", "0.2", &thrown("time.integrator=newmark", "0.2"));
     row("thrown", "implicit", "0.5", &thrown(IMPLICIT, "0.5"));
     let large = row("thrown", "implicit", "5", &thrown(IMPLICIT, "5"));
-    assert!(large > 2.0 * small, "{small:e} {large:e}");
+    assert!(large > 6.0 * small, "{small:e} {large:e}");
     approve("implicit__pays", &table);
 }
 
