@@ -534,8 +534,8 @@ fn captions(chapter: &str, text: &str) -> (Vec<(String, String)>, Vec<String>) {
     (found, bare)
 }
 
-/// Every figure and table has a caption, that of a figure says what to take away, and what is
-/// referred to is there. The numbers are given by the build.
+/// Every figure and table has a caption, and what is referred to is there. The numbers are given
+/// by the build.
 #[test]
 fn figures_and_tables_have_captions() {
     let (mut names, mut without) = (Vec::new(), Vec::new());
@@ -543,8 +543,7 @@ fn figures_and_tables_have_captions() {
         let (found, bare) = captions(&chapter, &text);
         without.extend(bare);
         for (name, caption) in found {
-            let says_why = !name.ends_with(".svg") || caption.contains("What to take away: ");
-            if caption.len() < 10 || !says_why {
+            if caption.len() < 10 {
                 without.push(format!("{chapter}: {name}"));
             }
             let stands_twice = names.contains(&name) && !name.contains('/');
@@ -560,6 +559,31 @@ fn figures_and_tables_have_captions() {
             assert!(names.iter().any(|known| known == name), "{chapter}: no caption of {name}");
         }
     }
+}
+
+/// True where a caption of a figure says what is drawn, in a sentence, and then what to take away.
+fn says_what_to_take_away(caption: &str) -> bool {
+    let Some((drawn, taken)) = caption.split_once("What to take away: ") else { return false };
+    drawn.trim_end().ends_with(['.', ')']) && taken.len() > 20 && taken.ends_with(['.', ')'])
+}
+
+/// The caption of every figure says what is drawn, and ends in what the reader should take away.
+#[test]
+fn figures_say_what_to_take_away() {
+    let (mut count, mut without) = (0, Vec::new());
+    for (chapter, text) in chapters() {
+        for rest in text.split("{{#figure ").skip(1) {
+            let (name, caption) = rest.split("}}\n").next().unwrap().split_once(" | ").unwrap();
+            count += 1;
+            if !says_what_to_take_away(caption.trim()) {
+                without.push(format!("{chapter}: {name}: {caption}"));
+            }
+        }
+    }
+    assert!(without.is_empty(), "nothing to take away:\n{}", without.join("\n"));
+    assert!(count > 30, "{count}");
+    assert!(!says_what_to_take_away("The error against the number of cells. It falls."));
+    assert!(!says_what_to_take_away("The error against the number of cells. What to take away: "));
 }
 
 /// A table without a caption is seen, and one with a caption, or in code, is not taken for one.

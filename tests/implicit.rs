@@ -190,13 +190,13 @@ fn implicit_order_in_time() {
 /// On the bar, 80 cells: with half a cell per step and the consistent matrix the velocity of the
 /// end is right to 0.110 and the stress to 0.196, and the energy stays to 1e-4; with the lumped
 /// matrix to 0.131 to 0.133 and 0.211, at a loss of 3.5%. Five cells per step still give 0.173. All
-/// to 1%. Histories are those of the digests.
+/// to 1%. Histories are those of the digests, which stand in a snapshot of their own.
 #[test]
 fn implicit_on_the_bar() {
     let mut table = String::from(
         "basis,mass,c Δt/h,velocity at L,stress at 3L/4,displacement,energy drift,iterations per step\n",
     );
-    let mut histories = String::from("basis,mass,c Δt/h,digest of the history\n");
+    let mut digests = String::from("basis,mass,c Δt/h,digest\n");
     let mut row = |basis: &str, mass: MassCase, cfl: &str| {
         let scene =
             bar(&[mass.sets, &[&format!("basis.{basis}"), &format!("time.cfl={cfl}")]].concat());
@@ -208,13 +208,9 @@ fn implicit_on_the_bar() {
         assert!(column(&outcome.history, "equilibrium_residual").iter().all(|size| *size <= 1e-10));
         let all: Vec<f64> = outcome.history.rows().flatten().copied().collect();
         let kind = basis.replace("kind=", "");
-        writeln!(
-            table,
-            "{kind},{},{cfl},{v:.3},{sigma:.3},{u:.4},{drift:.1e},{per_step:.2}",
-            mass.name
-        )
-        .unwrap();
-        writeln!(histories, "{kind},{},{cfl},{:016x}", mass.name, digest(&all)).unwrap();
+        let row = format!("{kind},{},{cfl}", mass.name);
+        writeln!(table, "{row},{v:.3},{sigma:.3},{u:.4},{drift:.1e},{per_step:.2}").unwrap();
+        writeln!(digests, "{row},{:016x}", digest(&all)).unwrap();
         (v, sigma, drift)
     };
     let near = |(v, sigma, drift): (f64, f64, f64), expected: [f64; 3]| {
@@ -231,7 +227,7 @@ fn implicit_on_the_bar() {
     near(row("kind=linear", LUMPED, "2"), [0.137, 0.230, -0.0523]);
     near(row("kind=linear", LUMPED, "5"), [0.173, 0.308, -0.0636]);
     approve("implicit__bar", &table);
-    approve("implicit__histories", &histories);
+    approve("implicit__bar_digests", &digests);
 }
 
 /// Across cells, 160 of them, one cell per step, the errors over all particles and time are those
@@ -493,7 +489,7 @@ fn column_stress_along_it() {
 /// Where a load grows slowly, over a hundred transits of a wave, steps of forty cells, eighty times
 /// fewer than the explicit ones, have the displacement to half a percent: what they miss is the
 /// small vibration that the beginning of the load sets off. Where a wave is what matters that is not
-/// so: with five cells per step the bar that is thrown has more than twice the explicit error.
+/// so: with five cells per step the bar that is thrown has more than six times the explicit error.
 #[test]
 fn implicit_pays_for_slow_loads() {
     let mut table = String::from("motion,scheme,c Δt/h,steps,factorisations,displacement\n");
@@ -520,7 +516,7 @@ fn implicit_pays_for_slow_loads() {
     let small = row("thrown", "explicit", "0.2", &thrown("time.integrator=newmark", "0.2"));
     row("thrown", "implicit", "0.5", &thrown(IMPLICIT, "0.5"));
     let large = row("thrown", "implicit", "5", &thrown(IMPLICIT, "5"));
-    assert!(large > 2.0 * small, "{small:e} {large:e}");
+    assert!(large > 6.0 * small, "{small:e} {large:e}");
     approve("implicit__pays", &table);
 }
 

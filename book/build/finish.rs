@@ -23,6 +23,7 @@ pub fn pages(html: &Path, formulas: &[Formula]) -> Result<()> {
         // What opens the table of contents is a button, and says so.
         let mended = mended.replace("<label id", "<label role=\"button\" tabindex=\"0\" id");
         let mended = tables(&maths::fill(&mended, formulas).with_context(|| name.to_string())?);
+        let mended = commands(&mended);
         if mended != page {
             fs::write(&file, mended).with_context(|| format!("cannot write {name}"))?;
         }
@@ -49,6 +50,23 @@ fn tables(page: &str) -> String {
         let region = format!("{TABLE} tabindex=\"0\" role=\"region\" aria-labelledby=\"{id}\"");
         out.push_str(CAPTION);
         out.push_str(&piece.replacen(TABLE, &region, 1));
+    }
+    out
+}
+
+/// Each line of a block of commands is an element, so that one that is wrapped can be indented.
+fn commands(page: &str) -> String {
+    const BLOCK: &str = "<code class=\"language-console\">";
+    let mut pieces = page.split(BLOCK);
+    let mut out = pieces.next().unwrap_or("").to_string();
+    for piece in pieces {
+        let (block, rest) = piece.split_once("</code>").unwrap_or((piece, ""));
+        out.push_str(BLOCK);
+        for line in block.lines() {
+            out.push_str(&format!("<span class=\"line\">{line}</span>\n"));
+        }
+        out.push_str("</code>");
+        out.push_str(rest);
     }
     out
 }
