@@ -50,7 +50,9 @@ impl<const D: usize> Model<D> {
         let (vector, matrix) = (size_of::<SVector<f64, D>>(), size_of::<SMatrix<f64, D, D>>());
         let of_multiplier =
             if self.basis.has_multiplier() { size_of::<Multiplier<D>>() } else { 0 };
-        let of_basis = of_multiplier + if self.basis.has_stretch() { vector } else { 0 };
+        let of_metric = if self.basis.has_metric() { matrix } else { 0 }; // A_p
+        let of_stretch = if self.basis.has_stretch() { vector } else { 0 };
+        let of_basis = of_multiplier + of_metric + of_stretch;
         let of_method = if self.method.needs().acceleration { vector } else { 0 }; // a_p
         let of_map = if self.keeps_gradient() { matrix } else { 0 }; // G_p
         let of_law = if self.law.law.is_hyperelastic() {
@@ -110,6 +112,9 @@ impl<const D: usize> State<D> {
             vec![0.0; if hyperelastic { 0 } else { particles * Particles::<D>::PLANES }];
         if model.basis.has_multiplier() {
             particle.lambda = vec![Multiplier::default(); particles];
+        }
+        if model.basis.has_metric() {
+            particle.pull = vec![SMatrix::identity(); particles];
         }
         if model.basis.has_stretch() {
             particle.stretch = vec![SVector::repeat(1.0); particles];

@@ -39,7 +39,7 @@ pub enum Degree {
     Cubic,
 }
 
-/// The cut-off of local max-ent leaves a box of nodes, or a ball.
+/// The cut-off of local max-ent leaves a box of nodes, a ball, or what becomes of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
     /// |ξ| is the largest distance along an axis: the functions are products of those of
@@ -47,6 +47,9 @@ pub enum Support {
     Box,
     /// |ξ| is the distance.
     Ball,
+    /// |ξ| is the distance before the deformation: the metric goes with the material, and the
+    /// functions with it. With OTM only, whose nodes go with it, too.
+    Ellipsoid,
 }
 
 impl Basis {
@@ -64,6 +67,11 @@ impl Basis {
             Basis::Lme { .. } => true,
             Basis::Linear | Basis::Ugimp { .. } | Basis::Gimp { .. } | Basis::BSpline(_) => false,
         }
+    }
+
+    /// Says whether each particle keeps A of its metric, B = γ AᵀA/h².
+    pub fn has_metric(&self) -> bool {
+        matches!(self, Basis::Lme { support: Support::Ellipsoid, .. })
     }
 
     /// Says whether each particle keeps its stretch along each axis.

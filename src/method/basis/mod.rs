@@ -1,5 +1,6 @@
 //! All shape functions (§3.3 and §5) stand behind one function that fills the table.
 
+pub mod anisotropic;
 pub mod bins;
 pub mod bspline;
 mod kind;
@@ -102,15 +103,17 @@ enum Making {
 }
 
 impl Making {
-    /// Along one axis a ball is a box.
+    /// Along one axis a ball is a box. On a grid no metric deforms, so an ellipsoid is a ball.
     fn of<const D: usize>(basis: &Basis) -> Self {
         match *basis {
             Basis::Linear => Making::Linear,
             Basis::Ugimp { half_length } | Basis::Gimp { half_length } => Making::Gimp(half_length),
             Basis::BSpline(degree) => Making::BSpline(degree),
             Basis::Lme { gamma, cutoff, support } => match support {
-                Support::Ball if D > 1 => Making::Ball(Width::of(gamma, cutoff)),
-                Support::Ball | Support::Box => Making::Box(Width::of(gamma, cutoff)),
+                Support::Ball | Support::Ellipsoid if D > 1 => {
+                    Making::Ball(Width::of(gamma, cutoff))
+                }
+                _ => Making::Box(Width::of(gamma, cutoff)),
             },
         }
     }
