@@ -1,4 +1,4 @@
-//! Local max-ent with a metric that deforms with the material (Kumar and others, anisotropic
+//! Local max-ent with a metric that deforms with the material (Kumar, Danas and Kochmann 2019, anisotropic
 //! functions for OTM): a point measures distances as they were before the body was stretched.
 //!
 //! The weights are p_a ∝ exp(−(x − x_a)·B(x − x_a) + λ·(x − x_a)) with B = γ/h² 1 at the start
