@@ -13,16 +13,25 @@ use lme_mpm::scene::DYKA;
 use nalgebra::{DMatrix, Matrix2, Matrix3, SMatrix, SVector, Vector1, Vector2};
 use std::fmt::Write;
 
-/// A bar of unit cells, E = ρ = 1 and so c/h = 1, both ends held, stretched by F in one step.
-fn stretched_bar(gamma: f64, metric: &str, cells: usize, F: f64) -> (Model<1>, State<1>) {
+/// The laws with the steps that stretch a bar: σ = E ln F of the rate law comes out of small ones.
+const LOGARITHMIC: (&str, usize) = ("rate", 100);
+const NEO_HOOKEAN: (&str, usize) = ("neo-hookean", 1);
+
+/// A bar of 20 unit cells, E = ρ = 1 and so c/h = 1, both ends held, stretched by F.
+fn stretched_bar(
+    gamma: f64,
+    metric: &str,
+    (law, parts): (&str, usize),
+    F: f64,
+) -> (Model<1>, State<1>) {
     let sets = [
-        format!("body.length={cells}"),
-        format!("grid.cells={cells}"),
+        format!("body.law={law}"),
         format!("basis.gamma={gamma}"),
         format!("basis.metric={metric}"),
     ];
     let fixed = [
-        "body.law=neo-hookean",
+        "body.length=20",
+        "grid.cells=20",
         "body.density=1",
         "body.youngs_modulus=1",
         "body.poisson_ratio=0",
@@ -31,10 +40,12 @@ fn stretched_bar(gamma: f64, metric: &str, cells: usize, F: f64) -> (Model<1>, S
     ];
     let (model, mut state) = at_start::<1>(&block(1, &[&strs(&sets), &fixed[..]].concat()));
     otm::start(&mut state, &model).unwrap();
-    for a in 0..state.node.len() {
-        state.node.v[a] = state.node.x[a] * (F - 1.0);
+    for _ in 0..parts {
+        for a in 0..state.node.len() {
+            state.node.v[a] = state.node.x[a] * (F.powf(1.0 / parts as f64) - 1.0);
+        }
+        displace(&mut state, &model, Functions::Renewed);
     }
-    displace(&mut state, &model, Functions::Renewed);
     (model, state)
 }
 
@@ -145,9 +156,14 @@ fn step(state: &mut State<1>, model: &Model<1>, held: &[Vector1<f64>], dt: f64) 
 
 /// The stretch at which growth begins, between one without and one with it, by bisection; `None`
 /// where the second has none.
-fn threshold(gamma: f64, metric: &str, quiet: f64, growing: f64) -> Option<f64> {
+fn threshold(
+    gamma: f64,
+    metric: &str,
+    law: (&str, usize),
+    (quiet, growing): (f64, f64),
+) -> Option<f64> {
     let grows = |F: f64| {
-        let (model, state) = stretched_bar(gamma, metric, 20, F);
+        let (model, state) = stretched_bar(gamma, metric, law, F);
         growth(&model, &state, Functions::Renewed) > 1e-3
     };
     if !grows(growing) {
@@ -167,7 +183,7 @@ fn growth_curve(gamma: f64, metric: &str, (from, to): (f64, f64)) -> Vec<(f64, f
     (0..=60)
         .map(|n| {
             let F = from + (to - from) * f64::from(n) / 60.0;
-            let (model, state) = stretched_bar(gamma, metric, 20, F);
+            let (model, state) = stretched_bar(gamma, metric, LOGARITHMIC, F);
             (F, growth(&model, &state, Functions::Renewed))
         })
         .collect()
@@ -175,11 +191,12 @@ fn growth_curve(gamma: f64, metric: &str, (from, to): (f64, f64)) -> Vec<(f64, f
 
 /// Where a stretched bar of 20 cells is unstable. The fixed metric fails in compression alone, the
 /// updated one in tension alone and only for γ < 2.5 or so, and frozen functions nowhere. What an
-/// independent program found first stands beside, and is met to 0.02 wherever both have a limit.
+/// independent program found first stands beside, and is met to 0.03: its
+/// law was σ = E ln F. The neo-Hookean bar is stiffer in tension, and at γ = 2.5 has no limit up to 4.
 #[test]
 fn aniso_stability_of_stretched_states() {
     let mut table =
-        "metric,γ,unstable from F,expected,growth with frozen functions (c/h)\n".to_string();
+        "metric,γ,unstable from F,expected,with the neo-Hookean law,growth with frozen functions (c/h)\n".to_string();
     let cases = [
         ("fixed", 0.8, Some(0.741)),
         ("fixed", 1.8, Some(0.513)),
@@ -193,21 +210,29 @@ fn aniso_stability_of_stretched_states() {
     ];
     for (metric, gamma, expected) in cases {
         let (growing, other) = if metric == "fixed" { (0.3, 4.0) } else { (4.0, 0.3) };
-        let found = threshold(gamma, metric, 1.0, growing);
-        if let (Some(found), Some(expected)) = (found, expected) {
-            assert!((found - expected).abs() < 0.02, "{metric}, {gamma}: {found}");
-        }
-        assert!(expected.is_some() || found.is_none(), "{metric}, {gamma}: {found:?}");
+        let of = |law| threshold(gamma, metric, law, (1.0, growing));
+        let (found, neo_hookean) = (of(LOGARITHMIC), of(NEO_HOOKEAN));
+        let close = match (found, expected) {
+            (Some(found), Some(expected)) => (found - expected).abs() < 0.03,
+            (found, expected) => found == expected,
+        };
+        assert!(close, "{metric}, {gamma}: {found:?}");
         let mut frozen: f64 = 0.0;
         for F in [growing, other] {
-            let (model, state) = stretched_bar(gamma, metric, 20, F);
+            let (model, state) = stretched_bar(gamma, metric, LOGARITHMIC, F);
             frozen = frozen.max(growth(&model, &state, Functions::Frozen));
         }
-        let (model, state) = stretched_bar(gamma, metric, 20, other);
+        let (model, state) = stretched_bar(gamma, metric, LOGARITHMIC, other);
         assert!(growth(&model, &state, Functions::Renewed) < 1e-3, "{metric}, {gamma}: {other}");
         assert!(frozen < 1e-3, "{metric}, {gamma}: {frozen}");
         let word = |x: Option<f64>| x.map_or("never".to_string(), |x| format!("{x:.3}"));
-        let _ = writeln!(table, "{metric},{gamma},{},{},{frozen:.3}", word(found), word(expected));
+        let _ = writeln!(
+            table,
+            "{metric},{gamma},{},{},{},{frozen:.3}",
+            word(found),
+            word(expected),
+            word(neo_hookean)
+        );
     }
     approve("aniso__stability", &table);
 }
@@ -222,7 +247,7 @@ fn aniso_growth_as_predicted() {
         ("updated", 0.8, 2.0, 0.01),
         ("updated", 1.8, 2.0, 0.01),
     ] {
-        let (model, state) = stretched_bar(gamma, metric, 20, F);
+        let (model, state) = stretched_bar(gamma, metric, LOGARITHMIC, F);
         let predicted = growth(&model, &state, Functions::Renewed);
         let measured = simulated(&model, &state, predicted);
         assert!(
@@ -333,7 +358,12 @@ fn aniso_metric_goes_with_the_material() {
         let sets = ["body.law=neo-hookean", "basis.metric=updated"];
         let (model, mut state) = at_start::<D>(&block(D, &sets));
         otm::start(&mut state, &model).unwrap();
-        let before: Vec<_> = state.shape.pairs().map(|(a, p, N, _)| (a, p, N)).collect();
+        let sorted = |state: &State<D>| {
+            let mut pairs: Vec<_> = state.shape.pairs().map(|(a, p, N, _)| (p, a, N)).collect();
+            pairs.sort_by_key(|(p, a, _)| (*p, *a));
+            pairs
+        };
+        let before = sorted(&state);
         for _ in 0..25 {
             let State { particle, node, shape, .. } = &mut state;
             for a in 0..node.len() {
@@ -347,9 +377,11 @@ fn aniso_metric_goes_with_the_material() {
         for (A_p, F_p) in state.particle.pull.iter().zip(&state.particle.F) {
             assert!((A_p * F_p - SMatrix::<f64, D, D>::identity()).norm() < 1e-10);
         }
-        for (n, (a, p, N, _)) in state.shape.pairs().enumerate() {
-            assert_eq!((a, p), (before[n].0, before[n].1));
-            assert!((N - before[n].2).abs() < 1e-9, "{:e}", N - before[n].2);
+        let after = sorted(&state);
+        assert_eq!(before.len(), after.len());
+        for ((p, a, N), (q, b, N_after)) in before.iter().zip(&after) {
+            assert_eq!((p, a), (q, b));
+            assert!((N - N_after).abs() < 1e-9, "{:e}", N - N_after);
         }
     }
     check::<1>(SMatrix::<f64, 1, 1>::new(0.06));
@@ -402,25 +434,4 @@ fn aniso_refuses_what_makes_no_sense() {
     refused(DYKA, &lme, "stay behind");
     refused(DYKA, &["basis.metric=updated"], "means nothing");
     refused(DYKA_OTM, &["basis.metric=anisotropic"], "\"updated\"");
-}
-
-#[test]
-fn aniso_explore() {
-    for (gamma, F) in [(1.8, 2.0), (0.8, 2.0), (2.5, 2.6)] {
-        for cells in [20, 40] {
-            let (model, state) = stretched_bar(gamma, "updated", cells, F);
-            let e = operator(&model, &state, Functions::Renewed).complex_eigenvalues();
-            let mut e: Vec<_> = e.iter().map(|e| (e.re, e.im)).collect();
-            e.sort_by(|a, b| a.0.total_cmp(&b.0));
-            println!("{gamma} {F} {cells}: {:.4?}", &e[..5]);
-            let g = growth(&model, &state, Functions::Renewed);
-            println!("{g} {}", if g > 0.1 { simulated(&model, &state, g) } else { 0.0 });
-        }
-    }
-    for (gamma, F) in [(1.8, 1.41), (1.8, 1.42), (2.5, 2.6), (2.5, 4.0)] {
-        for cells in [10, 16, 40] {
-            let (model, state) = stretched_bar(gamma, "updated", cells, F);
-            println!("{gamma} {F} {cells}: {}", growth(&model, &state, Functions::Renewed));
-        }
-    }
 }

@@ -113,9 +113,8 @@ impl<const D: usize> State<D> {
         if model.basis.has_multiplier() {
             particle.lambda = vec![Multiplier::default(); particles];
         }
-        if model.basis.has_metric() {
-            particle.pull = vec![SMatrix::identity(); particles];
-        }
+        let metrics = if model.basis.has_metric() { particles } else { 0 };
+        particle.pull = vec![SMatrix::identity(); metrics];
         if model.basis.has_stretch() {
             particle.stretch = vec![SVector::repeat(1.0); particles];
         }
@@ -126,8 +125,8 @@ impl<const D: usize> State<D> {
             }
         };
         let equilibrium = needs.equilibrium.then(|| Box::new(Equilibrium::blank(nodes)));
-        let (shape, scratch) = (Shape::blank(particles), Scratch::default());
-        State { particle, node, shape, mass, equilibrium, scratch, steps: 0 }
+        let shape = Shape::blank(particles);
+        State { particle, node, shape, mass, equilibrium, scratch: Scratch::default(), steps: 0 }
     }
 
     /// Gives what carries the body's mass and motion: the particles of MPM, the nodes of OTM.

@@ -25,10 +25,10 @@ pub struct Places<'a, const D: usize> {
     pub h: &'a SVector<f64, D>,
 }
 
-/// Points say where particles stand and, where their metric goes with the material, how that has
-/// deformed.
+/// Particles are carried by the nodes: this says where they stand and, where their metric goes with
+/// the material, how that has deformed.
 #[derive(Clone, Copy)]
-pub struct Points<'a, const D: usize> {
+pub struct Carried<'a, const D: usize> {
     /// x_p (m).
     pub x: &'a [SVector<f64, D>],
     /// A_p of the metric (–); empty where it stays as it was.
@@ -44,7 +44,7 @@ pub fn fill_from_nodes<const D: usize>(
     nodes: Places<D>,
     x: &[SVector<f64, D>],
 ) -> Result<(), Breakdown> {
-    fill_in_metric(shape, scratch, lambda, basis, nodes, Points { x, pull: &[] })
+    fill_in_metric(shape, scratch, lambda, basis, nodes, Carried { x, pull: &[] })
 }
 
 // ANCHOR: scattered
@@ -62,7 +62,7 @@ pub fn fill_in_metric<const D: usize>(
     lambda: &mut [Multiplier<D>],
     basis: &Basis,
     nodes: Places<D>,
-    Points { x, pull }: Points<D>,
+    Carried { x, pull }: Carried<D>,
 ) -> Result<(), Breakdown> {
     shape.clear([0; D]);
     // At least the nodes of a cell, however narrow the functions.

@@ -152,8 +152,8 @@ pub fn tabulate_again<const D: usize>(
 ) -> Result<(), Breakdown> {
     let Particles { x, lambda, pull, .. } = particle;
     let nodes = scattered::Places { x: &node.x, h: &model.grid.h };
-    let points = scattered::Points { x, pull };
-    scattered::fill_in_metric(shape, scratch, lambda, &model.basis, nodes, points)
+    let carried = scattered::Carried { x, pull };
+    scattered::fill_in_metric(shape, scratch, lambda, &model.basis, nodes, carried)
 }
 
 // ANCHOR: renew_masses
