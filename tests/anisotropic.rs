@@ -58,6 +58,10 @@ enum Functions {
     Frozen,
 }
 
+/// Growth below this (c/h) is not counted: K is not symmetric, and at γ = 4 pairs of its eigenvalues
+/// turn complex by a little before any turns negative.
+const BEGINS: f64 = 0.02;
+
 /// Moves the nodes by v, of which Δt = 1 makes a displacement, and all else with them.
 fn displace(state: &mut State<1>, model: &Model<1>, functions: Functions) {
     let State { particle, node, shape, .. } = state;
@@ -164,7 +168,7 @@ fn threshold(
 ) -> Option<f64> {
     let grows = |F: f64| {
         let (model, state) = stretched_bar(gamma, metric, law, F);
-        growth(&model, &state, Functions::Renewed) > 1e-3
+        growth(&model, &state, Functions::Renewed) > BEGINS
     };
     if !grows(growing) {
         return None;
