@@ -1,6 +1,7 @@
 //! All tests as one program: it is built and linked once, and they run side by side.
 
 mod analytical;
+mod anisotropic;
 mod basis;
 mod book;
 mod bsplines;

@@ -52,7 +52,9 @@ impl<const D: usize> Model<D> {
         let (vector, matrix) = (size_of::<SVector<f64, D>>(), size_of::<SMatrix<f64, D, D>>());
         let of_multiplier =
             if self.basis.traits().multiplier { size_of::<Multiplier<D>>() } else { 0 };
-        let of_basis = of_multiplier + if self.basis.traits().stretch { vector } else { 0 };
+        let of_metric = if self.basis.traits().metric { matrix } else { 0 }; // A_p
+        let of_stretch = if self.basis.traits().stretch { vector } else { 0 };
+        let of_basis = of_multiplier + of_metric + of_stretch;
         let of_method = if self.method.needs().acceleration { vector } else { 0 }; // a_p
         let of_map = if self.keeps_gradient() { matrix } else { 0 }; // G_p
         let of_law = if self.law.law.is_hyperelastic() {
@@ -113,6 +115,8 @@ impl<const D: usize> State<D> {
         if model.basis.traits().multiplier {
             particle.lambda = vec![Multiplier::default(); particles];
         }
+        let metrics = if model.basis.traits().metric { particles } else { 0 };
+        particle.pull = vec![SMatrix::identity(); metrics];
         if model.basis.traits().stretch {
             particle.stretch = vec![SVector::repeat(1.0); particles];
         }
@@ -123,8 +127,8 @@ impl<const D: usize> State<D> {
             }
         };
         let equilibrium = needs.equilibrium.then(|| Box::new(Equilibrium::blank(nodes)));
-        let (shape, scratch) = (Shape::blank(particles), Scratch::default());
-        State { particle, node, shape, mass, equilibrium, scratch, steps: 0 }
+        let shape = Shape::blank(particles);
+        State { particle, node, shape, mass, equilibrium, scratch: Scratch::default(), steps: 0 }
     }
 
     /// Gives what carries the body's mass and motion: the particles of MPM, the nodes of OTM.

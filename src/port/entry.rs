@@ -1,6 +1,7 @@
 //! A trace is made of entries; they have symbols, and a form as CSV.
 
 use crate::method::basis::Basis;
+use crate::method::basis::anisotropic::Metric;
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::{Nodes, Particles};
@@ -146,7 +147,10 @@ impl TraceRecorder {
             "grad_N_Ip" => self.gradients(shape),
             "lambda" => {
                 let known = particle.lambda.iter().filter(|_| model.basis.traits().multiplier);
-                self.multipliers(known.map(|known| known.lambda), &model.grid.h);
+                let h = &model.grid.h;
+                self.multipliers(known.enumerate().map(|(p, known)| {
+                    Metric { h, A: particle.pull.get(p) }.gradient(&known.lambda)
+                }));
             }
             "m_I" => self.numbers(symbol, &node.m),
             "p_I" | "p_I_advanced" => self.vectors(symbol, &node.p),
@@ -265,13 +269,9 @@ impl TraceRecorder {
         }
     }
 
-    /// Writes λ_p (1/m) from `lambda` = λ_p h.
-    pub fn multipliers<const D: usize>(
-        &mut self,
-        lambda: impl Iterator<Item = SVector<f64, D>>,
-        h: &SVector<f64, D>,
-    ) {
-        let lambda: Vec<_> = lambda.map(|lambda| lambda.component_div(h)).collect();
+    /// Writes λ_p (1/m).
+    pub fn multipliers<const D: usize>(&mut self, lambda: impl Iterator<Item = SVector<f64, D>>) {
+        let lambda: Vec<_> = lambda.collect();
         self.vectors("lambda", &lambda);
     }
 }

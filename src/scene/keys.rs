@@ -155,6 +155,14 @@ pub const KEYS: &[Key] = &[
     )
     .with("basis.kind", "lme")
     .besides("not with the method \"otm\", whose nodes stand on no grid"),
+    may(
+        "basis.metric",
+        Choice(&["fixed", "updated"]),
+        Without::Word("fixed"),
+        "Whether distances are those of the present body, or B ← f⁻ᵀ B f⁻¹ goes with the material",
+    )
+    .with("basis.kind", "lme")
+    .besides("\"updated\" with the method \"otm\" only"),
     must("time", Table, "The scheme and its time step"),
     must(
         "time.integrator",

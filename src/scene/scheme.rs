@@ -117,14 +117,28 @@ pub fn basis(values: &Values, grid: &GridSpec) -> Result<Basis, Box<SceneError>>
         "lme" => Ok(Basis::Lme {
             gamma: values.number("basis.gamma")?,
             cutoff: values.number("basis.cutoff")?,
-            support: match values.word("method")? {
-                "otm" => Support::Ball, // its nodes stand on no grid
-                _ => values
-                    .choose("basis.support", &[("box", Support::Box), ("ball", Support::Ball)])?,
-            },
+            support: support(values)?,
         }),
         other => Err(values.error("basis.kind", format!("\"{other}\" is not known here"))),
     }
+}
+
+/// Reads which nodes local max-ent sees. Those of OTM stand on no grid, and its points measure
+/// distances as they are now or, with the updated metric, as they were.
+fn support(values: &Values) -> Result<Support, Box<SceneError>> {
+    let metric = values
+        .choose("basis.metric", &[("fixed", Support::Ball), ("updated", Support::Ellipsoid)])?;
+    if values.word("method")? == "otm" {
+        return Ok(metric);
+    }
+    if metric == Support::Ellipsoid {
+        let problem = "with the method \"mpm\" the nodes stay behind when the material deforms, \
+                       so a metric that goes with it measures nothing";
+        let mut error = values.error("basis.metric", problem);
+        error.allowed = "\"fixed\"".to_string();
+        return Err(error);
+    }
+    values.choose("basis.support", &[("box", Support::Box), ("ball", Support::Ball)])
 }
 
 /// Refuses what OTM cannot do.

@@ -41,7 +41,7 @@ pub enum Degree {
     Cubic,
 }
 
-/// The cut-off of local max-ent leaves a box of nodes, or a ball.
+/// The cut-off of local max-ent leaves a box of nodes, a ball, or what becomes of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
     /// |ξ| is the largest distance along an axis: the functions are products of those of
@@ -49,6 +49,9 @@ pub enum Support {
     Box,
     /// |ξ| is the distance.
     Ball,
+    /// |ξ| is the distance before the deformation: the metric goes with the material, and the
+    /// functions with it. With OTM only, whose nodes go with it, too.
+    Ellipsoid,
 }
 
 /// What the rest of the program asks of a basis.
@@ -56,6 +59,8 @@ pub enum Support {
 pub struct Traits {
     /// Each particle keeps a multiplier λ_p between tables.
     pub multiplier: bool,
+    /// Each particle keeps A of its metric, B = γ AᵀA/h².
+    pub metric: bool,
     /// Each particle keeps its stretch along each axis.
     pub stretch: bool,
     /// A node that a particle has just touched counts at once, however small its mass, so that the
@@ -76,6 +81,7 @@ impl Basis {
     pub fn traits(&self) -> Traits {
         let smooth = Traits {
             multiplier: false,
+            metric: false,
             stretch: false,
             switches_nodes_on: true,
             pushes_light_nodes: false,
@@ -88,8 +94,9 @@ impl Basis {
             Basis::Ugimp { .. } | Basis::BSpline(Degree::Quadratic) => smooth,
             Basis::Gimp { .. } => Traits { stretch: true, along: 4.0, ..smooth },
             Basis::BSpline(Degree::Cubic) => Traits { along: 4.0, ..smooth },
-            Basis::Lme { gamma, cutoff, .. } => Traits {
+            Basis::Lme { gamma, cutoff, support } => Traits {
                 multiplier: true,
+                metric: *support == Support::Ellipsoid,
                 switches_nodes_on: false,
                 along: 2.0 * radius(*gamma, *cutoff) + 2.0,
                 ..smooth

@@ -1,5 +1,6 @@
 //! All shape functions (§3.3 and §5) stand behind one function that fills the table.
 
+pub mod anisotropic;
 pub mod bins;
 pub mod bspline;
 pub mod ddmp;
@@ -103,7 +104,7 @@ enum Making {
 }
 
 impl Making {
-    /// Along one axis a ball is a box.
+    /// Along one axis a ball is a box. On a grid no metric deforms, so an ellipsoid is a ball.
     fn of<const D: usize>(basis: &Basis) -> Self {
         match *basis {
             Basis::Linear => Making::Linear,
@@ -111,8 +112,10 @@ impl Making {
             Basis::BSpline(degree) => Making::BSpline(degree),
             Basis::Ddmp => Making::Ddmp,
             Basis::Lme { gamma, cutoff, support } => match support {
-                Support::Ball if D > 1 => Making::Ball(Width::of(gamma, cutoff)),
-                Support::Ball | Support::Box => Making::Box(Width::of(gamma, cutoff)),
+                Support::Ball | Support::Ellipsoid if D > 1 => {
+                    Making::Ball(Width::of(gamma, cutoff))
+                }
+                _ => Making::Box(Width::of(gamma, cutoff)),
             },
         }
     }

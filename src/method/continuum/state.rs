@@ -38,6 +38,9 @@ pub struct Particles<const D: usize> {
     /// How long each particle is along each axis, relative to its start (–); of GIMP with domains
     /// that stretch only.
     pub stretch: Vec<SVector<f64, D>>,
+    /// A_p, the inverse of the deformation since the start (–); of local max-ent with a metric that
+    /// goes with the material only: B_p = γ AᵀA/h².
+    pub pull: Vec<SMatrix<f64, D, D>>,
     /// Sums of ½ (G_ji − G_ij), how far each particle has turned in each plane (rad); of the
     /// rate law in 2D and 3D only.
     pub turned: Vec<f64>,
@@ -132,6 +135,7 @@ impl<const D: usize> Particles<D> {
             G: Vec::new(),
             F: Vec::new(),
             stretch: Vec::new(),
+            pull: Vec::new(),
             turned: Vec::new(),
             cost: Cost::default(),
         }

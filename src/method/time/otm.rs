@@ -9,6 +9,7 @@ use super::deformation::deform;
 use super::steps::balance_forces;
 use crate::method::basis::scattered;
 use crate::method::breakdown::Breakdown;
+use crate::method::continuum::law;
 use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::{Nodes, Particles};
 use crate::method::continuum::sums;
@@ -115,7 +116,21 @@ pub fn deform_particles<const D: usize>(
     for p in 0..particle.len() {
         particle.G[p] = sums::velocity_gradient(node, shape, p) * dt;
     }
-    deform(particle, &model.law)
+    deform(particle, &model.law)?;
+    update_metric(particle)
+}
+
+/// Takes the metric along: A_p ← A_p f⁻¹, and so B_p ← f⁻ᵀ B_p f⁻¹, where it is to go with the
+/// material. Elsewhere there is nothing to take.
+///
+/// Errors: [`Breakdown::Inverted`] if f has no inverse.
+pub fn update_metric<const D: usize>(particle: &mut Particles<D>) -> Result<(), Breakdown> {
+    for (p, (A_p, G_p)) in particle.pull.iter_mut().zip(&particle.G).enumerate() {
+        let (f, J) = law::increment(G_p);
+        let inverse = f.try_inverse();
+        *A_p *= inverse.ok_or(Breakdown::Inverted { particle: p, strain: J - 1.0 })?;
+    }
+    Ok(())
 }
 
 /// Shows v_p = Σ_a v_a N_ap for what is recorded; nothing is computed from it.
@@ -135,9 +150,10 @@ pub fn tabulate_again<const D: usize>(
     State { particle, node, shape, scratch, .. }: &mut State<D>,
     model: &Model<D>,
 ) -> Result<(), Breakdown> {
-    let Particles { x, lambda, .. } = particle;
+    let Particles { x, lambda, pull, .. } = particle;
     let nodes = scattered::Places { x: &node.x, h: &model.grid.h };
-    scattered::fill_from_nodes(shape, scratch, lambda, &model.basis, nodes, x)
+    let carried = scattered::Carried { x, pull };
+    scattered::fill_in_metric(shape, scratch, lambda, &model.basis, nodes, carried)
 }
 
 // ANCHOR: renew_masses

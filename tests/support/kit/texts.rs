@@ -75,7 +75,7 @@ pub fn basis_in<const D: usize>(base: &str, sets: &[&str], places: &[[f64; D]]) 
     kernel.at(0, 2).shapes(&table.shape);
     kernel.gradients(&table.shape);
     if let Basis::Lme { .. } = model.basis {
-        kernel.multipliers(table.lambda.iter().copied(), &model.grid.h);
+        kernel.multipliers(table.lambda.iter().map(|l| l.component_div(&model.grid.h)));
     }
     in_both(&kernel.entries)
 }

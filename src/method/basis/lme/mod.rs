@@ -32,6 +32,7 @@ mod weights;
 pub use axis::{AxisFunctions, AxisPoint, solve_axis};
 pub use failure::Failure;
 
+use super::anisotropic::Metric;
 use crate::method::continuum::shape::Shape;
 use crate::method::cost::Cost;
 use functions::Functions;
@@ -98,11 +99,25 @@ pub fn max_ent_row<const D: usize>(
     h: &SVector<f64, D>,
     starts: impl IntoIterator<Item = SVector<f64, D>>,
 ) -> Result<SVector<f64, D>, Failure> {
+    let metric = Metric { h, A: None };
+    max_ent_row_in(shape, lme, gamma, metric, starts)
+}
+
+/// Does the same where the nodes were shown as ξ of this metric.
+///
+/// Errors: [`Failure`], and nothing written.
+pub fn max_ent_row_in<const D: usize>(
+    shape: &mut Shape<D>,
+    lme: &mut Lme<D>,
+    gamma: f64,
+    metric: Metric<D>,
+    starts: impl IntoIterator<Item = SVector<f64, D>>,
+) -> Result<SVector<f64, D>, Failure> {
     let Lme { seen, turned, weights, functions } = lme;
     let lambda = solve(functions, weights, seen, gamma, starts)
         .or_else(|_| solve_turned(turned, functions, weights, seen, gamma))?;
     for ((I, N_I), grad) in seen.I.iter().zip(&functions.p).zip(&functions.grad) {
-        shape.push(*I, *N_I, grad.component_div(h));
+        shape.push(*I, *N_I, metric.gradient(grad));
     }
     Ok(lambda)
 }
