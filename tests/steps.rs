@@ -202,6 +202,7 @@ fn model(fixed: &[(usize, usize)], loads: Option<Loads<1>>) -> Model<1> {
         mass: Mass::Lumped,
         method: Method::Mpm(Integrator::CorrectedEuler),
         kinematics: Kinematics::AsPrinted,
+        reconstruction: None,
         dt: DT,
         steps: 1,
     }

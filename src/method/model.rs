@@ -11,6 +11,7 @@ use super::continuum::state::{Carriers, Multiplier, Nodes, Particles};
 use super::cost::Cost;
 use super::grid::Grid;
 use super::reading::Kinematics;
+use super::reconstruction::Reconstruction;
 use nalgebra::{SMatrix, SVector};
 
 /// Fixed components of nodes are pairs (I, i).
@@ -29,6 +30,8 @@ pub struct Model<const D: usize> {
     pub mass: Mass,
     /// Which map the strain of MPM is taken from; OTM has one.
     pub kinematics: Kinematics,
+    /// How the internal forces are integrated, where it is not the sum over particles.
+    pub reconstruction: Option<Reconstruction>,
     /// Δt (s).
     pub dt: f64,
     /// N_t, the number of time steps.

@@ -5,6 +5,7 @@ use crate::method::choice::{Law, Mass, Method};
 use crate::method::continuum::law::Elastic;
 use crate::method::exact::riemann::End;
 use crate::method::reading::Kinematics;
+use crate::method::reconstruction::Reconstruction;
 
 /// A scene is checked: every value is in range and every list has one entry for each axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +16,7 @@ pub struct Scene {
     pub method: Method,
     pub mass: Mass,
     pub kinematics: Kinematics,
+    pub reconstruction: Option<Reconstruction>,
     pub body: Body,
     pub grid: GridSpec,
     pub basis: Basis,

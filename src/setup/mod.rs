@@ -36,6 +36,7 @@ pub fn model<const D: usize>(scene: &Scene) -> Model<D> {
         loads: lattice::loads(scene, &places),
         method: scene.method,
         kinematics: scene.kinematics,
+        reconstruction: scene.reconstruction,
         mass: scene.mass,
         dt: scene.time.end / steps,
         steps: steps as usize,
