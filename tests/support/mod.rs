@@ -1,6 +1,7 @@
 //! What several tests share: runs, tables of shape functions, errors and orders, snapshots.
 
 mod cases;
+mod crossing;
 pub mod figures;
 pub mod kit;
 pub mod lines;
@@ -10,6 +11,7 @@ mod scenes;
 pub mod sketch;
 
 pub use cases::*;
+pub use crossing::*;
 pub use reference::*;
 pub use scenes::*;
 

@@ -152,7 +152,7 @@ fn pull<const D: usize>(
 }
 
 /// Lists Gauss's points of a cell: two along each axis for linear functions, three for B-splines.
-fn points<const D: usize>(functions: Functions) -> Vec<(SVector<f64, D>, f64)> {
+pub fn points<const D: usize>(functions: Functions) -> Vec<(SVector<f64, D>, f64)> {
     let line: &[[f64; 2]] = match functions {
         Functions::Linear => &TWO,
         Functions::BSpline(_) => &THREE,
