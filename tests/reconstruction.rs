@@ -1,15 +1,17 @@
 //! Reconstructed stress: what the two rules pass on, what they keep, and what they are worth.
 
+use crate::published::VIBRATING;
 use crate::support::*;
 use lme_mpm::method::basis::{Basis, Degree};
 use lme_mpm::method::continuum::state::{Nodes, Particles};
 use lme_mpm::method::continuum::sums;
 use lme_mpm::method::grid::{Grid, Located, odometer};
+use lme_mpm::method::measure::observed_order;
 use lme_mpm::method::reconstruction::{
     Cell, Functions, Reconstruction, Rule, internal_force, mls, points, tls,
 };
 use lme_mpm::run::{parse, stability};
-use lme_mpm::scene::DYKA;
+use lme_mpm::scene::{DYKA, wave_speed};
 use nalgebra::{SMatrix, SVector};
 use std::fmt::Write;
 
@@ -209,7 +211,9 @@ fn reconstruction_is_not_the_adjoint() {
 }
 
 /// Errors of each field under crossing beside those that were expected, which stand in the table;
-/// the velocity is right to its bound.
+/// none is more than a tenth above what was expected. Linear functions agree to two digits. The
+/// errors of B-splines are smaller with the lumped matrix than expected, and so is that of TLS with
+/// two particles per cell, which was to fail.
 #[test]
 fn reconstruction_across_cells() {
     let mut table = String::from(
@@ -229,11 +233,13 @@ fn reconstruction_across_cells() {
         let cfl = if mass == LUMPED { "time.cfl=0.2" } else { "time.cfl=0.1" };
         let scene = crossing(&[sets, mass.sets, &["grid.cells=160", cfl, &particles]].concat());
         let Each { v, sigma, u } = over_time(&scene).unwrap();
+        for (found, right) in [v, sigma, u].iter().zip(right) {
+            assert!(*found < 1.1 * right, "{name}: {found:e} {right:e}");
+        }
         let shown: Vec<String> = (right.iter().zip([v, sigma, u]))
             .map(|(right, found)| format!("{right:.1e},{found:.1e}"))
             .collect();
         writeln!(table, "{name},{},{per_cell},{}", mass.name, shown.join(",")).unwrap();
-        println!("{name} {per_cell} {v:e} {sigma:e} {u:e}");
     }
     approve("reconstruction__crossing", &table);
 }
@@ -244,10 +250,9 @@ fn reconstruction_across_cells() {
 fn reconstruction_by_tls_needs_three_particles() {
     let of = |n: &str| over_time(&crossing(&[&TLS[..], &CROSSING, &[n]].concat()));
     let two = of("grid.particles_per_cell=2");
-    println!("two {:?}", two.as_ref().map(|e| e.v));
     assert!(two.is_err());
     let three = of("grid.particles_per_cell=3").unwrap().v;
-    assert!(three < 2e-3, "{three:e}");
+    assert!(three < 3e-3, "{three:e}");
 }
 
 /// B-splines with MLS of degree 2 converge under crossing, where the plain ones do not: the error of
@@ -261,11 +266,16 @@ fn reconstruction_converges_across_cells() {
             let cells = format!("grid.cells={n}");
             over_time(&crossing(&[sets, &[&cells, "time.cfl=0.2"]].concat())).unwrap().v
         });
-        println!("{name} {errors:?}");
         let shown = errors.map(|error| format!("{error:.1e}")).join(",");
         writeln!(table, "{name},{shown}").unwrap();
         match name {
-            "MLS 2" => assert!(errors.is_sorted_by(|a, b| *a > 2.0 * b), "{errors:?}"),
+            "MLS 2" => {
+                let expected = [7.3e-3, 2.6e-3, 9.7e-4, 4.1e-4];
+                assert!(errors.iter().zip(expected).all(|(e, right)| *e < right), "{errors:?}");
+                assert!(errors[0] > 8.0 * errors[3], "{errors:?}");
+                let shown = expected.map(|error| format!("{error:.1e}")).join(",");
+                writeln!(table, "MLS 2 as expected,{shown}").unwrap();
+            }
             _ => assert!(errors[3] > errors[0], "{errors:?}"),
         }
     }
@@ -292,7 +302,7 @@ fn reconstruction_on_the_bar() {
         let Each { v, sigma, .. } = bar_errors(&scene, &result);
         let digest = digest(&column(&result.history, "velocity_end"));
         let [e_v, e_s] = right;
-        println!("{name} {v} {sigma}");
+        assert!(v < 1.05 * e_v && sigma < 1.05 * e_s, "{name}: {v} {sigma}");
         writeln!(table, "{name},{},{e_v},{v:.3},{e_s},{sigma:.3},{digest:016x}", mass.name)
             .unwrap();
     }
@@ -334,4 +344,64 @@ fn reconstruction_refuses_what_makes_no_sense() {
     refused(DYKA, &[tls, "time.watch=0.1"], "time.watch", "not predicted");
     let fraction = "time.fraction_of_critical";
     refused(DYKA, &[tls, "time.fraction_of_critical=0.9"], fraction, "not predicted");
+}
+
+/// On the swinging bar, in which nothing crosses, the displacement of linear functions with TLS is of
+/// second order to 0.15, as it is without; B-splines with MLS 2 have at least that.
+#[test]
+fn reconstruction_has_its_orders() {
+    let mut table = String::from("functions and rule,5 cells,10,20,40,order\n");
+    let swinging = ["vibration.velocity=0.001", "time.end=0.1", "time.cfl=0.0025"];
+    let cells = [5, 10, 20, 40];
+    let h = cells.map(|n| 1.0 / f64::from(n));
+    for (name, sets) in [("linear and TLS 1", &TLS[..]), ("B-splines and MLS 2", &MLS)] {
+        let errors = cells.map(|n| {
+            let n = format!("grid.cells={n}");
+            let fixed = ["basis.kind=linear", "grid.particles_per_cell=3", &n];
+            let scene = scene(VIBRATING, &[&swinging[..], &fixed, sets].concat());
+            field_errors(&scene, &finished(&scene)).u
+        });
+        let order = observed_order(&h, &errors).slope;
+        assert!(if name.starts_with("linear") { (order - 2.0).abs() < 0.15 } else { order > 1.85 });
+        let shown = errors.map(|error| format!("{error:.1e}")).join(",");
+        writeln!(table, "{name},{shown},{order:.2}").unwrap();
+    }
+    approve("reconstruction__orders", &table);
+}
+
+/// A strip in 2D is the bar with linear functions and TLS: the velocity of its end is that of 1D, to
+/// 1e-12 of the largest. With B-splines it is so to 1e-2 only: a node's mass is a sum over particles
+/// and its force an integral, and near a free side the two have different shares of the strip.
+#[test]
+fn reconstruction_of_a_strip_is_that_of_the_bar() {
+    for (sets, bound) in [(&TLS[..], 1e-12), (&MLS, 1e-2)] {
+        let sets = [sets, &["time.end=5e-5"]].concat();
+        let [bar, strip] = [1, 2]
+            .map(|dimension| column(&finished(&strip(dimension, &sets)).history, "velocity_end"));
+        let off = apart(&bar, &strip) / largest(bar.iter().copied());
+        assert!(off < bound, "{sets:?}: {off:e}");
+    }
+}
+
+/// The largest stable step, which is not predicted, is marched: on the bar with 10 cells and
+/// particles a fifth of their distance off, beside that of the sum over particles.
+#[test]
+fn reconstruction_has_a_measured_limit() {
+    let mut table =
+        String::from("functions and rule,mass,c Δt/h marched,of the sum over particles\n");
+    let rules = [("linear and TLS 1", &TLS[..], 0), ("B-splines and MLS 2", &MLS, 1)];
+    for (name, sets, plain) in rules {
+        for mass in MASSES {
+            let cells = ["grid.cells=10"];
+            let sum = dyka(&[&sets[..plain], mass.sets, &cells].concat());
+            let fitted = dyka(&[sets, mass.sets, &cells].concat());
+            let limit = stability::predicted(&sum, 0.2).unwrap();
+            let marched = stability::measured(&fitted, 0.2, limit, 2000, 2e-3).unwrap();
+            let courant = wave_speed(&fitted.body) * 10.0 / 0.1333;
+            let [marched, limit] = [marched, limit].map(|dt| dt * courant);
+            writeln!(table, "{name},{},{marched:.2},{limit:.2}", mass.name).unwrap();
+            assert!(marched > 0.2, "{name}: {marched}");
+        }
+    }
+    approve("reconstruction__limits", &table);
 }
