@@ -8,7 +8,7 @@ use lme_mpm::method::continuum::sums;
 use lme_mpm::method::grid::{Grid, Located, odometer};
 use lme_mpm::method::measure::observed_order;
 use lme_mpm::method::reconstruction::{
-    Cell, Functions, Reconstruction, Rule, internal_force, mls, points, tls,
+    Cell, Piecewise, Reconstruction, Rule, internal_force, mls, points, tls,
 };
 use lme_mpm::run::{parse, stability};
 use lme_mpm::scene::{DYKA, wave_speed};
@@ -42,7 +42,7 @@ fn cells<const D: usize>(grid: &Grid<D>, particle: &Particles<D>, mut each: impl
         let at = grid.locate(x).unwrap();
         inside[grid.node(at.cell)].push((p, at));
     }
-    let points = points::<D>(Functions::BSpline(Degree::Quadratic));
+    let points = points::<D>(Piecewise::BSpline(Degree::Quadratic));
     for index in odometer(grid.cells) {
         each(&Cell { index, points: &points, grid, particle, inside: &inside });
     }
@@ -149,9 +149,9 @@ fn inner_force<const D: usize>(basis: Basis, rule: Option<Reconstruction>, per_c
 fn reconstruction_of_uniform_stress_is_in_balance() {
     fn check<const D: usize>(per_cell: usize) {
         let spline = Degree::Quadratic;
-        let splines = (Basis::BSpline(spline), Functions::BSpline(spline));
+        let splines = (Basis::BSpline(spline), Piecewise::BSpline(spline));
         for (rule, (basis, functions)) in [
-            (Rule::Tls, (Basis::Linear, Functions::Linear)),
+            (Rule::Tls, (Basis::Linear, Piecewise::Linear)),
             (Rule::Tls, splines),
             (Rule::Mls, splines),
         ] {
@@ -177,7 +177,7 @@ fn reconstruction_ends_with_the_body() {
     particle.m.fill(0.125);
     particle.sigma.fill(SMatrix::repeat(1.0));
     let shape = on_grid(&Basis::Linear, &grid, &particle.x).unwrap().shape;
-    let of = Reconstruction { rule: Rule::Tls, degree: 1, functions: Functions::Linear };
+    let of = Reconstruction { rule: Rule::Tls, degree: 1, functions: Piecewise::Linear };
     let mut node = Nodes::blank(grid.nodes());
     // Half a cell of material is as much as half a particle away from none and from a full one.
     particle.m[4] = 0.1;
@@ -200,7 +200,7 @@ fn reconstruction_is_not_the_adjoint() {
     let V = |p: usize| particle.m[p] / particle.rho[p];
     let strain = |p: usize| sums::gradient(&u, &all, &shape, p)[0];
     let inner: f64 = (0..particle.len()).map(|p| V(p) * particle.sigma[p][0] * strain(p)).sum();
-    let of = Reconstruction { rule: Rule::Tls, degree: 1, functions: Functions::Linear };
+    let of = Reconstruction { rule: Rule::Tls, degree: 1, functions: Piecewise::Linear };
     let [sum, fitted] = [None, Some(of)].map(|rule| {
         let mut node = Nodes::blank(grid.nodes());
         internal_force(&mut node, &particle, &shape, &grid, rule);

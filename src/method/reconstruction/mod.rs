@@ -21,7 +21,7 @@ pub struct Reconstruction {
     pub rule: Rule,
     /// The degree of its polynomials, 0 to 2.
     pub degree: usize,
-    pub functions: Functions,
+    pub functions: Piecewise,
 }
 
 /// These rules give a stress at Gauss's points.
@@ -35,7 +35,7 @@ pub enum Rule {
 
 /// These shape functions have a reconstruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Functions {
+pub enum Piecewise {
     Linear,
     BSpline(Degree),
 }
@@ -152,10 +152,10 @@ fn pull<const D: usize>(
 }
 
 /// Lists Gauss's points of a cell: two along each axis for linear functions, three for B-splines.
-pub fn points<const D: usize>(functions: Functions) -> Vec<(SVector<f64, D>, f64)> {
+pub fn points<const D: usize>(functions: Piecewise) -> Vec<(SVector<f64, D>, f64)> {
     let line: &[[f64; 2]] = match functions {
-        Functions::Linear => &TWO,
-        Functions::BSpline(_) => &THREE,
+        Piecewise::Linear => &TWO,
+        Piecewise::BSpline(_) => &THREE,
     };
     let point = |i: [usize; D]| {
         let weight = i.iter().map(|i| line[*i][1]).product();
@@ -182,18 +182,18 @@ fn inside<const D: usize>(
 /// Tabulates N_I and ∇N_I at the place ξ of a cell, and gives the number of the row.
 fn tabulate<const D: usize>(
     table: &mut Shape<D>,
-    functions: Functions,
+    functions: Piecewise,
     cell: &Cell<D>,
     xi: &SVector<f64, D>,
 ) -> usize {
     let row = table.cost.basis_evaluations as usize;
     let at = Located { cell: cell.index, xi: xi.map(|xi| 0.5 + 0.5 * xi) };
     match functions {
-        Functions::Linear => {
+        Piecewise::Linear => {
             let axes: [_; D] = from_fn(|d| linear::factors(at.xi[d], cell.grid.per_h[d]));
             table.push_product(from_fn(|d| (at.cell[d], &axes[d][..])));
         }
-        Functions::BSpline(degree) => {
+        Piecewise::BSpline(degree) => {
             let axes = bspline::axes(degree, &at, cell.grid);
             table.push_product(from_fn(|d| axes[d].factors()));
         }
