@@ -79,7 +79,6 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
     let basis = basis(values, &grid)?;
     filled(values, &body, &grid)?;
     let motion = motion(values, method, &body, &grid, &boundary)?;
-    let body_force = body_force(values)?;
     let traction = traction(values, &boundary)?;
     let probes = probes(values, &body)?;
     Ok(Scene {
@@ -96,7 +95,7 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         check: check(values)?,
         boundary,
         motion,
-        body_force,
+        body_force: body_force(values)?,
         traction,
         probes,
         every: values.whole("output.every")?,
