@@ -52,6 +52,7 @@ mod otm_action;
 mod otm_bar;
 mod port;
 mod published;
+mod reconstruction;
 mod refusals;
 mod regression;
 #[cfg(unix)] // pipes, links, signals, names that are bytes

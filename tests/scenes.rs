@@ -69,6 +69,9 @@ fn scenes_words_are_understood() {
                     sets.push(format!("{}={value}", other.path));
                 }
             }
+            if *word == "mls" {
+                sets.push("basis.kind=bspline".into()); // linear functions have none
+            }
             let text = if *word == "quasi-static" { COLUMN } else { DYKA }; // nothing is thrown
             let refused = parse("test", "test.toml", text, &sets).err();
             let problem = refused.map_or(String::new(), |error| error.problem);
@@ -107,6 +110,7 @@ fn scenes_keys_are_read() {
             (_, "initial_velocity.spin") => (DISCS, [a, b]),
             (_, "probe.component") => (DISCS, ["x", "y"]),
             (_, "time.load_steps") => (COLUMN, [a, b]),
+            (_, "forces.degree") => (text, ["0", "2"]),
             (_, "output.vtk") => (DISCS, [a, b]),
             ("basis" | "manufactured", _) => (MANUFACTURED, [a, b]), // with local max-ent
             ("vortex", _) => (VORTEX, [a, b]),
@@ -122,6 +126,12 @@ fn scenes_keys_are_read() {
         let with = |value: &str| {
             let mut sets = vec![format!("{path}={value}")];
             sets.extend(key.with.map(|(other, word)| format!("{other}={word}")));
+            if path.starts_with("forces.") {
+                sets.push("basis.kind=bspline".into());
+            }
+            if path == "forces.degree" {
+                sets.push("forces.reconstruction=tls".into());
+            }
             parse("test", "test.toml", text, &sets).unwrap_or_else(|error| panic!("{error}"))
         };
         assert_ne!(with(a), with(b), "nothing reads {}", key.path);

@@ -203,6 +203,7 @@ fn model(fixed: &[(usize, usize)], loads: Option<Loads<1>>) -> Model<1> {
         method: Method::Mpm(Integrator::CorrectedEuler),
         kinematics: Kinematics::AsPrinted,
         filter: None,
+        reconstruction: None,
         dt: DT,
         steps: 1,
     }

@@ -14,4 +14,5 @@ pub mod model;
 pub mod one_bar;
 pub mod quadrature;
 pub mod reading;
+pub mod reconstruction;
 pub mod time;

@@ -11,6 +11,7 @@ use super::continuum::state::{Carriers, Multiplier, Nodes, Particles};
 use super::cost::Cost;
 use super::grid::Grid;
 use super::reading::Kinematics;
+use super::reconstruction::Reconstruction;
 use nalgebra::{SMatrix, SVector};
 
 /// Fixed components of nodes are pairs (I, i).
@@ -31,6 +32,8 @@ pub struct Model<const D: usize> {
     pub kinematics: Kinematics,
     /// What is taken out of the stresses after each update; a scene may have no filter.
     pub filter: Option<Filter>,
+    /// How the internal forces are integrated, where it is not the sum over particles.
+    pub reconstruction: Option<Reconstruction>,
     /// Δt (s).
     pub dt: f64,
     /// N_t, the number of time steps.

@@ -8,6 +8,7 @@ use crate::method::continuum::state::{Nodes, Particles};
 use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
 use crate::method::reading::Kinematics;
+use crate::method::reconstruction::internal_force;
 use crate::run::table;
 use crate::scene::Scene;
 use crate::scene::fault::Fault;
@@ -161,7 +162,8 @@ impl TraceRecorder {
             "f_I" => self.vectors(symbol, &node.f),
             "f_int_I" => {
                 let mut own = Nodes::blank(node.len());
-                sums::internal_force(&mut own, particle, shape);
+                let rule = model.reconstruction;
+                internal_force(&mut own, particle, shape, &model.grid, rule);
                 self.vectors(symbol, &own.f);
             }
             "f_ext_I" => {

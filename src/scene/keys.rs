@@ -163,6 +163,21 @@ pub const KEYS: &[Key] = &[
     )
     .with("basis.kind", "lme")
     .besides("\"updated\" with the method \"otm\" only"),
+    may("forces", Table, Without::Says("as below"), "How the internal forces are integrated"),
+    may(
+        "forces.reconstruction",
+        Choice(&["tls", "mls"]),
+        Without::Says("the sum over particles"),
+        "The stress at Gauss's points by least squares of a cell, or moving about each point",
+    )
+    .besides("with a linear basis \"tls\", with B-splines either; explicit schemes of \"mpm\" only"),
+    may(
+        "forces.degree",
+        One(whole(0.0, Included(2.0))),
+        Without::Says("1 with \"tls\", 2 with \"mls\""),
+        "The degree of the polynomials",
+    )
+    .besides("only with forces.reconstruction"),
     must("time", Table, "The scheme and its time step"),
     must(
         "time.integrator",

@@ -5,6 +5,7 @@
 //! probe means no probe column. [`keys::KEYS`] says of every key what it may be.
 
 pub mod fault;
+mod forces;
 mod implicit;
 pub mod keys;
 pub mod kind;

@@ -5,6 +5,7 @@ use crate::method::choice::{Filter, Law, Mass, Method};
 use crate::method::continuum::law::Elastic;
 use crate::method::exact::riemann::End;
 use crate::method::reading::Kinematics;
+use crate::method::reconstruction::Reconstruction;
 
 /// A scene is checked: every value is in range and every list has one entry for each axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +17,7 @@ pub struct Scene {
     pub mass: Mass,
     pub kinematics: Kinematics,
     pub filter: Option<Filter>,
+    pub reconstruction: Option<Reconstruction>,
     pub body: Body,
     pub grid: GridSpec,
     pub basis: Basis,

@@ -1,6 +1,7 @@
 //! Makes of the values as written a checked [`Scene`].
 
 use super::fault::SceneError;
+use super::forces::forces;
 use super::implicit::implicit;
 use super::limits::{Budget, affordable};
 use super::loading::{body_force, traction};
@@ -87,6 +88,7 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         mass,
         kinematics: kinematics(values)?,
         filter: filter(values)?,
+        reconstruction: forces(values, basis)?,
         body,
         grid,
         basis,

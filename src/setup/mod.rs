@@ -37,6 +37,7 @@ pub fn model<const D: usize>(scene: &Scene) -> Model<D> {
         method: scene.method,
         kinematics: scene.kinematics,
         filter: scene.filter,
+        reconstruction: scene.reconstruction,
         mass: scene.mass,
         dt: scene.time.end / steps,
         steps: steps as usize,

@@ -13,6 +13,7 @@ use crate::method::continuum::state::{Nodes, Particles};
 use crate::method::continuum::sums;
 use crate::method::model::{Fixed, Model};
 use crate::method::reading::StepEight;
+use crate::method::reconstruction::internal_force;
 use nalgebra::SVector;
 
 /// This is γ of Newmark's method, which with β = 0 is the explicit central difference.
@@ -181,7 +182,7 @@ pub fn balance_forces<const D: usize>(
     model: &Model<D>,
     t: f64,
 ) {
-    sums::internal_force(node, particle, shape);
+    internal_force(node, particle, shape, &model.grid, model.reconstruction);
     if let Some(loads) = &model.loads {
         sums::external_force(node, particle, shape, loads, t);
     }

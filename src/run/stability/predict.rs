@@ -72,7 +72,7 @@ impl Critical {
 ///
 /// Errors: [`Breakdown`] of the first table, or of a singular mass matrix.
 pub fn critical(scene: &Scene) -> Result<Critical, Breakdown> {
-    if scene.method.needs().equilibrium {
+    if scene.method.needs().equilibrium || scene.reconstruction.is_some() {
         return Ok(Critical { start: f64::INFINITY, over_offsets: None });
     }
     let start = predicted(scene, 0.0)?;

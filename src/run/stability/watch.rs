@@ -85,7 +85,7 @@ impl<'a, const D: usize> Watch<'a, D> {
         state: &State<D>,
         limit: Option<Critical>,
     ) -> Option<Self> {
-        let unlimited = model.method.needs().equilibrium;
+        let unlimited = model.method.needs().equilibrium || model.reconstruction.is_some();
         if scene.time.watch == 0.0 || scene.time.allow_unstable || unlimited {
             return None;
         }

@@ -1,0 +1,202 @@
+//! The internal forces (14) are an integral, and this is the list of the ways to take it: the sum
+//! over the particles, or Gauss's points with a stress that is reconstructed there.
+//!
+//! A reconstructed force is not the adjoint of the strain (16), so no law keeps the energy.
+
+mod fit;
+pub mod mls;
+pub mod tls;
+
+use super::basis::{Degree, bspline, linear};
+use super::continuum::shape::Shape;
+use super::continuum::state::{Nodes, Particles};
+use super::continuum::sums;
+use super::grid::{Grid, Located, odometer};
+use nalgebra::{SMatrix, SVector};
+use std::array::from_fn;
+
+/// A reconstruction gives the stress between the particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reconstruction {
+    pub rule: Rule,
+    /// The degree of its polynomials, 0 to 2.
+    pub degree: usize,
+    pub functions: Piecewise,
+}
+
+/// These rules give a stress at Gauss's points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// Least squares over the particles of the cell, with Taylor's polynomials (reference 19).
+    Tls,
+    /// Moving least squares about each point (reference 18).
+    Mls,
+}
+
+/// These shape functions have a reconstruction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Piecewise {
+    Linear,
+    BSpline(Degree),
+}
+
+/// The places of two and of three Gauss's points along an axis of a cell, from −1 to 1, and the
+/// weights, whose sum is 1: 1/√3, and √(3/5).
+const TWO: [[f64; 2]; 2] = [[-0.577_350_269_189_625_8, 0.5], [0.577_350_269_189_625_8, 0.5]];
+const THREE: [[f64; 2]; 3] = [
+    [-0.774_596_669_241_483_4, 5.0 / 18.0],
+    [0.0, 8.0 / 18.0],
+    [0.774_596_669_241_483_4, 5.0 / 18.0],
+];
+
+/// A cell with its Gauss's points, at ξ in [−1, 1] along each axis (–), and the particles of all
+/// cells.
+pub struct Cell<'a, const D: usize> {
+    pub index: [usize; D],
+    pub points: &'a [(SVector<f64, D>, f64)],
+    pub grid: &'a Grid<D>,
+    pub particle: &'a Particles<D>,
+    /// The particles of each cell, which has its lowest node's number.
+    pub inside: &'a [Vec<(usize, Located<D>)>],
+}
+
+impl<const D: usize> Cell<'_, D> {
+    /// Lists the particles of the cell with their places.
+    pub fn own(&self) -> &[(usize, Located<D>)] {
+        &self.inside[self.grid.node(self.index)]
+    }
+
+    /// Gives |Ω_e|, the volume of a cell (m³).
+    pub fn volume(&self) -> f64 {
+        self.grid.h.product()
+    }
+
+    /// Says whether the body ends inside the cell: a cell beside it is empty, and the volumes of
+    /// its particles miss its own by more than half a particle.
+    fn is_cut(&self) -> bool {
+        let V: f64 = self.own().iter().map(|(p, _)| volume(self.particle, *p)).sum();
+        let half = 0.5 * V / self.own().len() as f64;
+        let is_empty = |d: usize, above: bool| {
+            let mut beside = self.index;
+            if above {
+                beside[d] += 1;
+            } else if beside[d] > 0 {
+                beside[d] -= 1;
+            }
+            beside[d] < self.grid.cells[d] && self.inside[self.grid.node(beside)].is_empty()
+        };
+        let ends = (0..D).any(|d| is_empty(d, false) || is_empty(d, true));
+        ends && libm::fabs(V - self.volume()) > half
+    }
+}
+
+/// Gives V_p = m_p / ρ_p (m³).
+pub fn volume<const D: usize>(particle: &Particles<D>, p: usize) -> f64 {
+    particle.m[p] / particle.rho[p]
+}
+
+// ANCHOR: internal
+/// (14) adds the internal forces by the quadrature that a model has: the sum over the particles,
+/// or with a reconstruction f_I −= Σ_e Σ_g w_g |Ω_e| σ(x_g) ∇N_I(x_g)  (N), over the cells that
+/// hold particles and their Gauss's points g. Where the body ends inside a cell, the particles
+/// of that cell are summed.
+///
+/// Tests: `reconstruction_of_uniform_stress_is_in_balance`, `reconstruction_ends_with_the_body`.
+pub fn internal_force<const D: usize>(
+    node: &mut Nodes<D>,
+    particle: &Particles<D>,
+    shape: &Shape<D>,
+    grid: &Grid<D>,
+    reconstruction: Option<Reconstruction>,
+) {
+    let Some(of) = reconstruction else {
+        return sums::internal_force(node, particle, shape);
+    };
+    let (points, inside) = (points::<D>(of.functions), inside(particle, grid));
+    let mut table = Shape::blank(0);
+    table.clear(grid.stride());
+    for index in odometer(grid.cells) {
+        let cell = Cell { index, points: &points, grid, particle, inside: &inside };
+        if cell.own().is_empty() {
+            continue;
+        }
+        if cell.is_cut() {
+            for (p, _) in cell.own() {
+                pull(node, shape, *p, &(particle.sigma[*p] * volume(particle, *p)));
+            }
+            continue;
+        }
+        let sigma = match of.rule {
+            Rule::Tls => tls::stress(&cell, of.degree),
+            Rule::Mls => mls::stress(&cell, of.degree),
+        };
+        for ((xi, weight), sigma_g) in points.iter().zip(sigma) {
+            let row = tabulate(&mut table, of.functions, &cell, xi);
+            pull(node, &table, row, &(sigma_g * (weight * cell.volume())));
+        }
+    }
+    node.cost = node.cost + table.cost;
+}
+// ANCHOR_END: internal
+
+/// Adds f_I −= (V σ) ∇N_I of one row of a table.
+fn pull<const D: usize>(
+    node: &mut Nodes<D>,
+    table: &Shape<D>,
+    row: usize,
+    V_sigma: &SMatrix<f64, D, D>,
+) {
+    for (I, _, grad_N_I) in table.of(row) {
+        node.f[I] -= V_sigma * grad_N_I;
+    }
+}
+
+/// Lists Gauss's points of a cell: two along each axis for linear functions, three for B-splines.
+pub fn points<const D: usize>(functions: Piecewise) -> Vec<(SVector<f64, D>, f64)> {
+    let line: &[[f64; 2]] = match functions {
+        Piecewise::Linear => &TWO,
+        Piecewise::BSpline(_) => &THREE,
+    };
+    let point = |i: [usize; D]| {
+        let weight = i.iter().map(|i| line[*i][1]).product();
+        (SVector::from_fn(|d, _| line[i[d]][0]), weight)
+    };
+    odometer([line.len(); D]).map(point).collect()
+}
+
+/// Lists the particles of each cell; a particle outside the grid has none, and the next table
+/// names it.
+fn inside<const D: usize>(
+    particle: &Particles<D>,
+    grid: &Grid<D>,
+) -> Vec<Vec<(usize, Located<D>)>> {
+    let mut inside = vec![Vec::new(); grid.nodes()];
+    for (p, x_p) in particle.x.iter().enumerate() {
+        if let Some(at) = grid.locate(x_p) {
+            inside[grid.node(at.cell)].push((p, at));
+        }
+    }
+    inside
+}
+
+/// Tabulates N_I and ∇N_I at the place ξ of a cell, and gives the number of the row.
+fn tabulate<const D: usize>(
+    table: &mut Shape<D>,
+    functions: Piecewise,
+    cell: &Cell<D>,
+    xi: &SVector<f64, D>,
+) -> usize {
+    let row = table.cost.basis_evaluations as usize;
+    let at = Located { cell: cell.index, xi: xi.map(|xi| 0.5 + 0.5 * xi) };
+    match functions {
+        Piecewise::Linear => {
+            let axes: [_; D] = from_fn(|d| linear::factors(at.xi[d], cell.grid.per_h[d]));
+            table.push_product(from_fn(|d| (at.cell[d], &axes[d][..])));
+        }
+        Piecewise::BSpline(degree) => {
+            let axes = bspline::axes(degree, &at, cell.grid);
+            table.push_product(from_fn(|d| axes[d].factors()));
+        }
+    }
+    row
+}
