@@ -72,7 +72,11 @@ fn scenes_words_are_understood() {
             if *word == "mls" {
                 sets.push("basis.kind=bspline".into()); // linear functions have none
             }
-            let text = if *word == "quasi-static" { COLUMN } else { DYKA }; // nothing is thrown
+            let text = match *word {
+                "quasi-static" => COLUMN, // nothing is thrown
+                "updated" => DYKA_OTM,    // nodes go along
+                _ => DYKA,
+            };
             let refused = parse("test", "test.toml", text, &sets).err();
             let problem = refused.map_or(String::new(), |error| error.problem);
             let other_reason = problem.is_empty()
@@ -105,6 +109,7 @@ fn scenes_keys_are_read() {
             (_, "body.ball.radius") => (DISCS, ["0.1", "0.15"]),
             (_, "basis.kind") => (text, ["linear", "ugimp"]),
             (_, "basis.degree") => (DYKA, [a, b]), // without a γ
+            (_, "basis.metric") => (DYKA_OTM, [a, b]),
             (_, "time.integrator") => (text, ["newmark", "corrected-euler"]),
             (_, "initial_velocity.to") => (text, ["0.12", "0.13"]),
             (_, "initial_velocity.spin") => (DISCS, [a, b]),
@@ -162,7 +167,7 @@ fn scenes_defaults_are_what_is_read() {
         assert_eq!(scene(text, &[&set]), scene(text, &[]), "{set}");
         keys += 1;
     }
-    assert_eq!(keys, 20);
+    assert_eq!(keys, 21);
 }
 
 /// No column of a history but a probe's own can be a probe's name.

@@ -79,7 +79,6 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
     let basis = basis(values, &grid)?;
     filled(values, &body, &grid)?;
     let motion = motion(values, method, &body, &grid, &boundary)?;
-    let traction = traction(values, &boundary)?;
     let probes = probes(values, &body)?;
     Ok(Scene {
         name: name.to_string(),
@@ -94,10 +93,10 @@ fn scene(name: &str, values: &Values) -> Result<Scene, Box<SceneError>> {
         basis,
         time,
         check: check(values)?,
+        traction: traction(values, &boundary)?,
         boundary,
         motion,
         body_force: body_force(values)?,
-        traction,
         probes,
         every: values.whole("output.every")?,
         vtk: vtk(values)?,

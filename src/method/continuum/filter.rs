@@ -6,7 +6,7 @@ use nalgebra::SMatrix;
 
 /// A cell sums up what its particles have.
 #[derive(Clone, Copy)]
-struct Cell<const D: usize> {
+struct CellSum<const D: usize> {
     particles: usize,
     /// Σ_q V_q (m³).
     V: f64,
@@ -23,7 +23,7 @@ struct Cell<const D: usize> {
 /// stress; the next table names it. Tests: `null_space_is_a_projection`,
 /// `null_space_changes_no_force`.
 pub fn null_space<const D: usize>(particle: &mut Particles<D>, grid: &Grid<D>) {
-    let nothing = Cell { particles: 0, V: 0.0, V_sigma: SMatrix::zeros() };
+    let nothing = CellSum { particles: 0, V: 0.0, V_sigma: SMatrix::zeros() };
     let mut cells = vec![nothing; grid.nodes()];
     let cell_of = |particle: &Particles<D>, p: usize| {
         grid.locate(&particle.x[p]).map(|at| grid.node(at.cell)) // a cell has its lowest node's number
