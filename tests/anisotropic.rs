@@ -58,8 +58,8 @@ enum Functions {
     Frozen,
 }
 
-/// Growth below this (c/h) is not counted: K is not symmetric, and at γ = 4 pairs of its eigenvalues
-/// turn complex by a little before any turns negative.
+/// Growth below this (c/h) is not counted: at γ = 4 with the fixed metric there is some a little before
+/// the limit, which has not been looked into.
 const BEGINS: f64 = 0.02;
 
 /// Moves the nodes by v, of which Δt = 1 makes a displacement, and all else with them.
