@@ -428,8 +428,8 @@ fn shell(dir: &Path, line: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The commands of a `console` block and what each prints; a line that ends with `\` goes on
-/// in the next one.
+/// The commands of a `console` block, each as it is printed, and what each prints; a line that ends
+/// with `\` goes on in the next one.
 fn commands(block: &str) -> Vec<(String, String)> {
     let one = |piece: &str| {
         let mut rest = piece;
@@ -437,10 +437,11 @@ fn commands(block: &str) -> Vec<(String, String)> {
         loop {
             let (first, after) = rest.split_once('\n').unwrap_or((rest, ""));
             rest = after;
-            match first.strip_suffix('\\') {
-                Some(goes_on) => line.push_str(goes_on),
-                None => return (line + first, rest.to_string()),
+            line.push_str(first);
+            if !first.ends_with('\\') {
+                return (line, rest.to_string());
             }
+            line.push('\n');
         }
     };
     format!("\n{block}")
