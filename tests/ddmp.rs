@@ -124,7 +124,7 @@ fn jump<const D: usize>(basis: &Basis) -> f64 {
     largest(of(n).iter().zip(of(n + 1)).map(|(a, b)| (a - b).amax()))
 }
 
-/// Across a face the gradient does not jump, to 1e-8; that of the linear functions does, by 1/h and
+/// Across a face the gradient does not jump, to 1e-7; that of the linear functions does, by 1/h and
 /// more in 1D.
 #[test]
 fn ddmp_is_continuous_across_faces() {
@@ -134,8 +134,8 @@ fn ddmp_is_continuous_across_faces() {
 }
 
 /// The bar on 80 cells and the motion across 160, lumped and consistent, by particles per cell: what is
-/// found beside what was expected of an independent program. It agrees to 6% on the bar, and across
-/// cells to a third.
+/// found beside what was expected of an independent program. All agree to
+/// 5%. On the bar the energy at the end is that of the start to 0.1%.
 #[test]
 fn ddmp_side_by_side() {
     let mut table = String::from(
@@ -180,6 +180,8 @@ fn ddmp_side_by_side() {
         writeln!(histories, "{mass},{n},{:016x}", digest(&all)).unwrap();
         let ratios = row("bar", mass, n, found, expected);
         assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 0.05), "{mass} {n}: {ratios:?}");
+        let drift = value(&scene, &outcome, "energy_drift");
+        assert!(drift.abs() < 1e-3, "{mass} {n}: {drift:e}");
     }
     for (mass, n, cfl, expected) in cells {
         let scene = crossing(&strs(&sets(mass, n, cfl)));
