@@ -7,27 +7,34 @@ use super::choice::Method;
 /// cell). MPM: equal distances. OTM: Gauss's points, 1 to 4, which integrate polynomials up to
 /// the degree 2n − 1.
 pub fn points(method: Method, n: usize) -> Vec<[f64; 2]> {
-    let about_middle = |list: &[[f64; 2]]| -> Vec<[f64; 2]> {
-        list.iter().map(|[r, w]| [0.5 + 0.5 * r, 0.5 * w]).collect()
-    };
     match (method, n) {
         (Method::Mpm(_), _) | (_, 1) => {
             (0..n).map(|k| [(k as f64 + 0.5) / n as f64, 1.0 / n as f64]).collect()
         }
-        (Method::Otm(_), 2) => {
-            let r = 1.0 / libm::sqrt(3.0);
-            about_middle(&[[-r, 1.0], [r, 1.0]])
-        }
-        (Method::Otm(_), 3) => {
-            let r = libm::sqrt(0.6);
-            about_middle(&[[-r, 5.0 / 9.0], [0.0, 8.0 / 9.0], [r, 5.0 / 9.0]])
-        }
         (Method::Otm(_), _) => {
+            gauss(n).into_iter().map(|[r, w]| [0.5 + 0.5 * r, 0.5 * w]).collect()
+        }
+    }
+}
+
+/// Lists `n` of Gauss's points, 1 to 4: place (−1 to 1) and weight, whose sum is 2.
+pub fn gauss(n: usize) -> Vec<[f64; 2]> {
+    match n {
+        1 => vec![[0.0, 2.0]],
+        2 => {
+            let r = 1.0 / libm::sqrt(3.0);
+            vec![[-r, 1.0], [r, 1.0]]
+        }
+        3 => {
+            let r = libm::sqrt(0.6);
+            vec![[-r, 5.0 / 9.0], [0.0, 8.0 / 9.0], [r, 5.0 / 9.0]]
+        }
+        _ => {
             let (middle, spread) = (3.0 / 7.0, 2.0 / 7.0 * libm::sqrt(1.2));
             let (near, far) = (libm::sqrt(middle - spread), libm::sqrt(middle + spread));
             let share = libm::sqrt(30.0) / 36.0;
             let (large, small) = (0.5 + share, 0.5 - share);
-            about_middle(&[[-far, small], [-near, large], [near, large], [far, small]])
+            vec![[-far, small], [-near, large], [near, large], [far, small]]
         }
     }
 }

@@ -5,6 +5,7 @@
 //! body's lower corner, so moving a scene in space changes no digit.
 
 use crate::method::cost::Cost;
+use crate::method::grid::{Grid, Located};
 use nalgebra::{SMatrix, SVector};
 
 // ANCHOR: particles
@@ -139,6 +140,18 @@ impl<const D: usize> Particles<D> {
             turned: Vec::new(),
             cost: Cost::default(),
         }
+    }
+
+    /// Lists the particles of each cell with their places in it; a cell has the number of its lowest
+    /// node. A particle outside the grid is in no list, and the next table names it.
+    pub fn by_cell(&self, grid: &Grid<D>) -> Vec<Vec<(usize, Located<D>)>> {
+        let mut cells = vec![Vec::new(); grid.nodes()];
+        for (p, x_p) in self.x.iter().enumerate() {
+            if let Some(at) = grid.locate(x_p) {
+                cells[grid.node(at.cell)].push((p, at));
+            }
+        }
+        cells
     }
 
     /// Moves particle p by `way` (m).

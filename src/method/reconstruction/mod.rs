@@ -12,6 +12,7 @@ use super::continuum::shape::Shape;
 use super::continuum::state::{Nodes, Particles};
 use super::continuum::sums;
 use super::grid::{Grid, Located, odometer};
+use super::quadrature::gauss;
 use nalgebra::{SMatrix, SVector};
 use std::array::from_fn;
 
@@ -39,15 +40,6 @@ pub enum Piecewise {
     Linear,
     BSpline(Degree),
 }
-
-/// The places of two and of three Gauss's points along an axis of a cell, from −1 to 1, and the
-/// weights, whose sum is 1: 1/√3, and √(3/5).
-const TWO: [[f64; 2]; 2] = [[-0.577_350_269_189_625_8, 0.5], [0.577_350_269_189_625_8, 0.5]];
-const THREE: [[f64; 2]; 3] = [
-    [-0.774_596_669_241_483_4, 5.0 / 18.0],
-    [0.0, 8.0 / 18.0],
-    [0.774_596_669_241_483_4, 5.0 / 18.0],
-];
 
 /// A cell with its Gauss's points, at ξ in [−1, 1] along each axis (–), and the particles of all
 /// cells.
@@ -112,7 +104,7 @@ pub fn internal_force<const D: usize>(
     let Some(of) = reconstruction else {
         return sums::internal_force(node, particle, shape);
     };
-    let (points, inside) = (points::<D>(of.functions), inside(particle, grid));
+    let (points, inside) = (points::<D>(of.functions), particle.by_cell(grid));
     let mut table = Shape::blank(0);
     table.clear(grid.stride());
     for index in odometer(grid.cells) {
@@ -153,30 +145,15 @@ fn pull<const D: usize>(
 
 /// Lists Gauss's points of a cell: two along each axis for linear functions, three for B-splines.
 pub fn points<const D: usize>(functions: Piecewise) -> Vec<(SVector<f64, D>, f64)> {
-    let line: &[[f64; 2]] = match functions {
-        Piecewise::Linear => &TWO,
-        Piecewise::BSpline(_) => &THREE,
+    let line = match functions {
+        Piecewise::Linear => gauss(2),
+        Piecewise::BSpline(_) => gauss(3),
     };
     let point = |i: [usize; D]| {
-        let weight = i.iter().map(|i| line[*i][1]).product();
+        let weight = i.iter().map(|i| 0.5 * line[*i][1]).product();
         (SVector::from_fn(|d, _| line[i[d]][0]), weight)
     };
     odometer([line.len(); D]).map(point).collect()
-}
-
-/// Lists the particles of each cell; a particle outside the grid has none, and the next table
-/// names it.
-fn inside<const D: usize>(
-    particle: &Particles<D>,
-    grid: &Grid<D>,
-) -> Vec<Vec<(usize, Located<D>)>> {
-    let mut inside = vec![Vec::new(); grid.nodes()];
-    for (p, x_p) in particle.x.iter().enumerate() {
-        if let Some(at) = grid.locate(x_p) {
-            inside[grid.node(at.cell)].push((p, at));
-        }
-    }
-    inside
 }
 
 /// Tabulates N_I and ∇N_I at the place ξ of a cell, and gives the number of the row.
