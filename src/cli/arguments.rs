@@ -204,6 +204,24 @@ pub enum Command {
         #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
         jobs: u16,
     },
+    /// Hold all methods side by side: the bar, and a motion across cells
+    ///
+    /// Writes methods.csv: errors, energy and counted cost of every basis, reconstruction, filter
+    /// and implicit scheme, on the bar of 80 cells, and where ten of 160 cells are crossed with two
+    /// particles per cell and with four. It takes a minute.
+    #[command(
+        after_help = "Example:\n  lme-mpm methods --out out/methods --jobs 2\n  lme-mpm methods --list | parallel --jobs 2 '{}' '>' 'rows/{#}.csv'\n  lme-mpm methods --out out/methods --merge rows/*.csv"
+    )]
+    Methods {
+        #[command(flatten)]
+        rows: RowArguments,
+        /// Where to write
+        #[arg(long, value_name = "DIR", default_value = "out/methods")]
+        out: PathBuf,
+        /// Threads; each run has one of its own
+        #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+        jobs: u16,
+    },
     /// Study the parameter γ of local max-ent on the bar
     ///
     /// Writes gamma.csv and pictures: errors, overshoot, total variation,

@@ -69,6 +69,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Fault> {
             verdicts::recommend(&scene, Question { criterion: quantity, error }, out, jobs)
         }
         Some(Command::Choose { rows, out, jobs }) => studies::choose(&rows, &out, jobs),
+        Some(Command::Methods { rows, out, jobs }) => studies::methods(&rows, &out, jobs),
         Some(Command::Gamma { rows, out, jobs }) => studies::gamma(&rows, &out, jobs),
         Some(Command::Orders { rows, scene, out, jobs }) => {
             studies::orders(&rows, &scene, &out, jobs)

@@ -13,6 +13,7 @@ use lme_mpm::study::choice;
 use lme_mpm::study::configuration::Template;
 use lme_mpm::study::gamma::{self as gammas, AtGamma};
 use lme_mpm::study::map;
+use lme_mpm::study::methods;
 use lme_mpm::study::orders::{self, Along, Ladder, Volumes};
 use lme_mpm::study::rows::{self, Study};
 use std::path::Path;
@@ -128,6 +129,24 @@ pub fn choose(arguments: &RowArguments, dir: &Path, jobs: u16) -> Result<(), Fau
     };
     let Some(rows) = study.rows(arguments, dir, jobs)? else { return Ok(()) };
     write_all(dir, &[("choose.csv".to_string(), choice::table(&rows)?)], &[])?;
+    print_report("", "", dir)
+}
+
+/// Does `lme-mpm methods`.
+pub fn methods(arguments: &RowArguments, dir: &Path, jobs: u16) -> Result<(), Fault> {
+    let study = ByRows {
+        study: "methods",
+        scene: None,
+        items: &methods::trials()?,
+        name: methods::Trial::name,
+        columns: &methods::columns(),
+        digest: methods::digest()?,
+        compute: &methods::study,
+        table: methods::table,
+        read: &methods::read,
+    };
+    let Some(rows) = study.rows(arguments, dir, jobs)? else { return Ok(()) };
+    write_all(dir, &[("methods.csv".to_string(), methods::table(&rows)?)], &[])?;
     print_report("", "", dir)
 }
 

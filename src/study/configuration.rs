@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// These keys are what a study varies. A configuration answers for all of them: what the scene
 /// says of them itself is taken out first.
-pub const KEYS: [&str; 16] = [
+pub const KEYS: [&str; 20] = [
     "method",
     "mass",
     "basis.kind",
@@ -16,6 +16,10 @@ pub const KEYS: [&str; 16] = [
     "basis.gamma",
     "basis.cutoff",
     "basis.support",
+    "basis.metric",
+    "forces.reconstruction",
+    "forces.degree",
+    "filter",
     "time.integrator",
     "time.reading",
     "time.stress_update",

@@ -6,6 +6,7 @@ pub mod gamma;
 pub mod log;
 pub mod map;
 pub mod measured;
+pub mod methods;
 pub mod orders;
 pub mod pool;
 pub mod ranking;
