@@ -42,6 +42,7 @@ mod loads;
 mod locking;
 mod mass;
 mod matrix;
+mod methods;
 mod mistakes;
 mod null_space;
 mod one_bar;

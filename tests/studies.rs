@@ -256,7 +256,7 @@ fn trade_goes_on_where_it_stopped() {
     let table = String::from_utf8(ranking::table(&rows).unwrap()).unwrap();
     assert_eq!(table.lines().count(), 5);
     assert!(table.contains("beyond its limit") || table.contains("used up"), "{table}");
-    assert!(table.contains("\nmpm,lumped,lme,,0.8,,,newmark,,,,10,2,,0.5,,"), "{table}");
+    assert!(table.contains("\nmpm,lumped,lme,,0.8,,,,,,,newmark,,,,10,2,,0.5,,"), "{table}");
     // Another scene's log is refused, and so is another file.
     let other = Template::parse(Path::new("v.toml"), VIBRATION).unwrap();
     let refused = |template: &Template| {

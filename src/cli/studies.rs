@@ -137,8 +137,8 @@ pub fn methods(arguments: &RowArguments, dir: &Path, jobs: u16) -> Result<(), Fa
     let study = ByRows {
         study: "methods",
         scene: None,
-        items: &methods::trials()?,
-        name: methods::Trial::name,
+        items: &methods::pairings()?,
+        name: methods::Pairing::name,
         columns: &methods::columns(),
         digest: methods::digest()?,
         compute: &methods::study,

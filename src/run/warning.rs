@@ -1,6 +1,5 @@
 //! A run that came to its end may still deserve a warning; each has a type, like an error.
 
-use crate::method::basis::Basis;
 use crate::method::breakdown::Moment;
 use crate::scene::Scene;
 use thiserror::Error;
@@ -73,12 +72,10 @@ impl Warning {
         if scene.dimension() == 1 || scene.grid.particles_per_cell.iter().all(|n| *n == 1) {
             return None;
         }
-        let from = match scene.basis {
-            Basis::Linear | Basis::Ugimp { .. } | Basis::Gimp { .. } | Basis::Ddmp => 0.45,
-            Basis::BSpline(_) => 0.499,
-            Basis::Lme { gamma, .. } if gamma <= 1.0 => 0.499,
-            Basis::Lme { gamma, .. } if gamma <= 4.0 && !scene.method.moves_nodes() => 0.49,
-            Basis::Lme { .. } => 0.45,
+        // Of OTM only the widest functions lock as late as on a grid.
+        let from = match scene.basis.traits().locks_from {
+            from if scene.method.moves_nodes() && from < 0.499 => 0.45,
+            from => from,
         };
         let nu = scene.body.poisson_ratio;
         (nu >= from).then_some(Warning::Locking { nu, from })

@@ -33,6 +33,12 @@ pub struct SceneError {
 }
 
 impl SceneError {
+    /// Says what is allowed instead.
+    pub fn allowing(mut self: Box<Self>, allowed: impl Into<String>) -> Box<Self> {
+        self.allowed = allowed.into();
+        self
+    }
+
     /// Draws the offending line with the error below it.
     pub fn render(&self, renderer: &Renderer) -> String {
         let title = match self.key.as_str() {

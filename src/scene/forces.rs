@@ -13,9 +13,7 @@ const NOT_PREDICTED: &str = "with a reconstructed stress the limit of the time s
 
 /// Makes the error of a key.
 fn refused(values: &Values, key: &str, problem: &str, allowed: &str) -> Box<SceneError> {
-    let mut error = values.error(key, problem);
-    error.allowed = allowed.to_string();
-    error
+    values.error(key, problem).allowing(allowed)
 }
 
 /// Reads the `forces` table.

@@ -83,7 +83,5 @@ fn refused(
 ) -> Box<SceneError> {
     let word = values.word("time.integrator").unwrap_or_default();
     let problem = format!("with the integrator \"{word}\" {problem}");
-    let mut error = values.error_at(key, other, problem);
-    error.allowed = allowed.to_string();
-    error
+    values.error_at(key, other, problem).allowing(allowed)
 }

@@ -63,10 +63,9 @@ fn sliding(values: &Values, boundary: &[[Side; 2]]) -> Result<(), Box<SceneError
             if (0..side.fixed.len()).any(|i| side.fixed[i] != (i == axis)) {
                 let name = SIDES[axis][upper];
                 let problem = format!("this motion slides along the side `{name}`");
-                let mut error = values.error("manufactured", problem);
-                error.allowed =
+                let allowed =
                     format!("boundary.{name} = {{ {} = \"fixed\" }}, and so on", AXES[axis]);
-                return Err(error);
+                return Err(values.error("manufactured", problem).allowing(allowed));
             }
         }
     }
@@ -77,9 +76,8 @@ fn sliding(values: &Values, boundary: &[[Side; 2]]) -> Result<(), Box<SceneError
 fn vortex(values: &Values, body: &Body) -> Result<VortexSpec, Box<SceneError>> {
     if body.law != Law::NeoHookean {
         let problem = "the body force of this motion is that of another law";
-        let mut error = values.error_at("body.law", "vortex", problem);
-        error.allowed = "\"neo-hookean\"".into();
-        return Err(error);
+        let error = values.error_at("body.law", "vortex", problem);
+        return Err(error.allowing("\"neo-hookean\""));
     }
     let half = 0.5 * body.length.iter().copied().fold(f64::INFINITY, f64::min);
     let inside = |radius: f64| 1.25 * radius <= half;

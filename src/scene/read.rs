@@ -34,11 +34,8 @@ impl Declared {
     ///
     /// Errors: [`SceneError`] with the key that asks for too much.
     pub fn affordable(&self, scene: &Scene, budget: &Budget) -> Result<(), Box<SceneError>> {
-        affordable(scene, budget).map_err(|excess| {
-            let mut error = self.error(excess.key, excess.problem);
-            error.allowed = excess.allowed;
-            error
-        })
+        affordable(scene, budget)
+            .map_err(|excess| self.error(excess.key, excess.problem).allowing(excess.allowed))
     }
 }
 
@@ -139,10 +136,8 @@ fn body(values: &Values) -> Result<Body, Box<SceneError>> {
         let problem = format!(
             "with body.density: the wave speed {c:e} m/s, the impedance {impedance:e} Pa s/m"
         );
-        let mut error = values.error("body.youngs_modulus", problem);
-        error.allowed =
-            "moduli whose wave speed √((λ + 2μ)/ρ) and impedance are ordinary numbers".into();
-        return Err(error);
+        let allowed = "moduli whose wave speed √((λ + 2μ)/ρ) and impedance are ordinary numbers";
+        return Err(values.error("body.youngs_modulus", problem).allowing(allowed));
     }
     Ok(body)
 }
@@ -177,9 +172,8 @@ fn crossed(values: &Values, body: &Body, grid: &GridSpec) -> Result<(), Box<Scen
         let time = body.length[d] / grid.cells[d] as f64 / c;
         if !(1e-150..=1e150).contains(&time) {
             let problem = format!("a wave takes {time:e} s through a cell of grid.cells");
-            let mut error = values.error("body.length", problem);
-            error.allowed = "lengths that a wave takes from 1e-150 s to 1e150 s for".into();
-            return Err(error);
+            let allowed = "lengths that a wave takes from 1e-150 s to 1e150 s for";
+            return Err(values.error("body.length", problem).allowing(allowed));
         }
     }
     Ok(())
@@ -198,9 +192,9 @@ fn filled(values: &Values, body: &Body, grid: &GridSpec) -> Result<(), Box<Scene
         let square: f64 = (0..values.dimension()).map(|d| offset(d) * offset(d)).sum();
         if square > ball.radius * ball.radius {
             let problem = "no particle lies in this ball";
-            let mut error = values.error(&format!("{entry}.radius"), problem);
-            error.allowed = format!("here a radius of at least {:e} m", libm::sqrt(square));
-            return Err(error);
+            let error = values.error(&format!("{entry}.radius"), problem);
+            let least = libm::sqrt(square);
+            return Err(error.allowing(format!("here a radius of at least {least:e} m")));
         }
     }
     Ok(())

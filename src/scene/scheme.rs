@@ -87,9 +87,7 @@ pub fn filter(values: &Values) -> Result<Option<Filter>, Box<SceneError>> {
     } else {
         return Ok(filter);
     };
-    let mut error = values.error("filter", problem);
-    error.allowed = "\"none\", or no such key".to_string();
-    Err(error)
+    Err(values.error("filter", problem).allowing("\"none\", or no such key"))
 }
 
 /// Reads whether the nodes of OTM keep their masses.
@@ -134,9 +132,7 @@ fn support(values: &Values) -> Result<Support, Box<SceneError>> {
     if metric == Support::Ellipsoid {
         let problem = "with the method \"mpm\" the nodes stay behind when the material deforms, \
                        so a metric that goes with it measures nothing";
-        let mut error = values.error("basis.metric", problem);
-        error.allowed = "\"fixed\"".to_string();
-        return Err(error);
+        return Err(values.error("basis.metric", problem).allowing("\"fixed\""));
     }
     values.choose("basis.support", &[("box", Support::Box), ("ball", Support::Ball)])
 }
@@ -144,9 +140,8 @@ fn support(values: &Values) -> Result<Support, Box<SceneError>> {
 /// Refuses what OTM cannot do.
 pub fn otm(values: &Values) -> Result<(), Box<SceneError>> {
     let refuse = |key: &str, problem: &str, allowed: &str| {
-        let mut error = values.error(key, format!("with the method \"otm\" {problem}"));
-        error.allowed = allowed.to_string();
-        Err(error)
+        let problem = format!("with the method \"otm\" {problem}");
+        Err(values.error(key, problem).allowing(allowed))
     };
     let kind = values.word("basis.kind")?;
     if !(kind == "lme" || (kind == "linear" && values.dimension() == 1)) {

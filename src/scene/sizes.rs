@@ -1,7 +1,6 @@
 //! Counts what a scene amounts to before anything is built: particles, nodes, pairs, steps.
 
 use super::parts::{Body, Scene};
-use crate::method::basis::{Basis, Support};
 use crate::method::choice::Mass;
 
 /// Gives c = √((λ + 2μ) / ρ) (m/s), the speed of a plane wave, (46) in the bar.
@@ -58,9 +57,7 @@ impl Scene {
     /// Bounds the numbers that a row of the table of shape functions holds: of a list N, ∇N and
     /// the node for each pair; of a product N and its slope for each node along each axis.
     pub fn numbers_per_row(&self) -> f64 {
-        let ball = matches!(self.basis, Basis::Lme { support: Support::Ball, .. });
-        let listed = (ball && self.dimension() > 1) || self.basis == Basis::Ddmp;
-        match listed || self.method.moves_nodes() {
+        match self.basis.traits().lists_rows || self.method.moves_nodes() {
             true => (2.0 + self.dimension() as f64) * self.pairs_per_particle(),
             false => (0..self.dimension()).map(|d| 2.0 * self.coupled(d).0).sum(),
         }

@@ -66,7 +66,7 @@ const IMPLICIT: [f64; 2] = [0.5, 1.0];
 
 /// One run of the study: a method in one of the two motions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trial {
+pub struct Pairing {
     pub method: &'static str,
     pub mass: &'static str,
     /// One of [`MOTIONS`].
@@ -85,25 +85,25 @@ pub struct Worth {
     pub cost: Cost,
 }
 
-/// A trial has what came of it, or the reason why nothing did.
+/// A pairing has what came of it, or the reason why nothing did.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tried {
-    pub trial: Trial,
+pub struct Judged {
+    pub pairing: Pairing,
     pub worth: Result<Worth, String>,
 }
 
-impl Trial {
+impl Pairing {
     /// Gives the name of its row.
     pub fn name(&self) -> String {
         format!("{}, {}, {}", self.motion, self.method, self.configuration)
     }
 }
 
-/// Lists all trials: the bar on 80 cells with two particles in each, and ten of 160 cells crossed
+/// Lists all pairings: the bar on 80 cells with two particles in each, and ten of 160 cells crossed
 /// with two particles per cell and with four.
 ///
 /// Errors: none, as every configuration can be read.
-pub fn trials() -> Result<Vec<Trial>, Fault> {
+pub fn pairings() -> Result<Vec<Pairing>, Fault> {
     let mut all = Vec::new();
     for (method, mass, sets, cfl) in METHODS {
         let scheme = if method.starts_with("implicit") { "implicit-newmark" } else { "newmark" };
@@ -116,7 +116,7 @@ pub fn trials() -> Result<Vec<Trial>, Fault> {
                  grid.particles_per_cell={per_cell} time.cfl={cfl}"
             );
             let configuration = line.parse()?;
-            all.push(Trial { method, mass, motion: MOTIONS[motion], configuration });
+            all.push(Pairing { method, mass, motion: MOTIONS[motion], configuration });
         }
     }
     Ok(all)
@@ -134,24 +134,24 @@ pub fn digest() -> Result<String, Fault> {
     templates()?.iter().map(|(_, template)| template.digest()).collect()
 }
 
-/// Runs some trials; `progress` hears of every one.
+/// Runs some pairings; `progress` hears of every one.
 pub fn study(
-    trials: &[Trial],
+    pairings: &[Pairing],
     jobs: usize,
     progress: &mut dyn FnMut(),
-) -> Result<Vec<Tried>, Fault> {
+) -> Result<Vec<Judged>, Fault> {
     let templates = templates()?;
-    let work = |trial: &Trial| {
-        let own = templates.iter().find(|(motion, _)| *motion == trial.motion);
-        let scene = own.map(|(_, template)| template.scene(&trial.configuration));
+    let work = |pairing: &Pairing| {
+        let own = templates.iter().find(|(motion, _)| *motion == pairing.motion);
+        let scene = own.map(|(_, template)| template.scene(&pairing.configuration));
         let worth = match scene {
             Some(Ok(scene)) => Worth::of(&scene),
             Some(Err(fault)) => Err(fault.to_string()),
             None => Err("there is no such motion".to_string()),
         };
-        Tried { trial: trial.clone(), worth }
+        Judged { pairing: pairing.clone(), worth }
     };
-    Ok(pool::all(trials, jobs, work, progress))
+    Ok(pool::all(pairings, jobs, work, progress))
 }
 
 impl Worth {
@@ -212,12 +212,12 @@ pub fn columns() -> Vec<&'static str> {
     own.into_iter().chain(errors).chain(counts).collect()
 }
 
-/// Writes the study as CSV: what was tried, why nothing came of it, errors, and counts.
-pub fn table(rows: &[Tried]) -> Result<Vec<u8>, Fault> {
-    let line = |Tried { trial, worth }: &Tried| {
-        let name = [trial.method, trial.mass, trial.motion].map(String::from);
+/// Writes the study as CSV: what was paired, why nothing came of it, errors, and counts.
+pub fn table(rows: &[Judged]) -> Result<Vec<u8>, Fault> {
+    let line = |Judged { pairing, worth }: &Judged| {
+        let name = [pairing.method, pairing.mass, pairing.motion].map(String::from);
         let mut cells = name.to_vec();
-        cells.push(trial.configuration.to_string());
+        cells.push(pairing.configuration.to_string());
         match worth {
             Ok(Worth { errors, energy, cost }) => {
                 let counts = cost.named().map(|(_, count)| count as f64);
@@ -236,16 +236,16 @@ pub fn table(rows: &[Tried]) -> Result<Vec<u8>, Fault> {
 }
 
 /// Reads a row of the table, with its name.
-pub fn read(cells: &[&str]) -> Option<(String, Tried)> {
+pub fn read(cells: &[&str]) -> Option<(String, Judged)> {
     let columns = columns();
     let cell = |name: &str| cells.get(columns.iter().position(|column| *column == name)?).copied();
     let configuration: Configuration = cell("configuration")?.parse().ok()?;
-    let own = |trial: &Trial| {
-        Some(trial.method) == cell("method")
-            && Some(trial.motion) == cell("motion")
-            && trial.configuration == configuration
+    let own = |pairing: &Pairing| {
+        Some(pairing.method) == cell("method")
+            && Some(pairing.motion) == cell("motion")
+            && pairing.configuration == configuration
     };
-    let trial = trials().ok()?.into_iter().find(own)?;
+    let pairing = pairings().ok()?.into_iter().find(own)?;
     let number = |name: &str| size(cell(name)?);
     let worth = match cell("problem")? {
         "" => {
@@ -259,5 +259,5 @@ pub fn read(cells: &[&str]) -> Option<(String, Tried)> {
         }
         problem => Err(problem.to_string()),
     };
-    Some((trial.name(), Tried { trial, worth }))
+    Some((pairing.name(), Judged { pairing, worth }))
 }

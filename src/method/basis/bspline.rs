@@ -1,10 +1,18 @@
 //! Quadratic and cubic B-splines are centred at the nodes and corrected at the ends of the grid
 //! (the extension that the paper names, its reference 18), D = 1, 2, 3.
 
-use super::kind::Degree;
 use super::tensor::Axis;
 use crate::method::continuum::shape::Factor;
 use crate::method::grid::{Grid, Located};
+
+/// B-splines have one of two degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Degree {
+    /// Parabolas, with one continuous derivative.
+    Quadratic,
+    /// Cubic functions, with two.
+    Cubic,
+}
 
 // ANCHOR: bspline
 /// Gives N and dN/dξ of the quadratic B-spline with knots at ±½ and ±3/2, ξ = (x − x_I)/h.

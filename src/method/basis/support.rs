@@ -7,6 +7,19 @@ use crate::method::continuum::state::Multiplier;
 use crate::method::grid::{Grid, Located};
 use nalgebra::{SVector, Vector1};
 
+/// The cut-off of local max-ent leaves a box of nodes, a ball, or what becomes of a ball.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Support {
+    /// |ξ| is the largest distance along an axis: the functions are products of those of
+    /// one axis.
+    Box,
+    /// |ξ| is the distance.
+    Ball,
+    /// |ξ| is the distance before the deformation: the metric goes with the material, and the
+    /// functions with it. With OTM only, whose nodes go with it, too.
+    Ellipsoid,
+}
+
 // ANCHOR: lme_support
 /// Gives the cut-off radius R/h = √(−ln tol/γ): beyond it exp(−γ|ξ|²) < tol. A tolerance of 0
 /// cuts nothing.
