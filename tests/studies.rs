@@ -445,12 +445,19 @@ fn traded(mut efforts: Vec<(String, (f64, f64))>) -> String {
     }
     let mut drawn = vec![Line::new("front of the particle methods", front, 6)];
     let markers = [Circle, Plus, Square, Cross, Diamond, Triangle, TriangleDown];
-    let words = [("lme", "LME"), ("ugimp", "uGIMP"), ("bspline", "B-splines"), ("otm", "OTM")];
+    let words = [
+        ("lme", "LME"),
+        ("ugimp", "uGIMP"),
+        ("gimp", "GIMP"),
+        ("ddmp", "DDMP"),
+        ("bspline", "B-splines"),
+        ("otm", "OTM"),
+    ];
     for (group, point) in efforts {
         let group = words.iter().fold(group, |group, (key, word)| group.replace(key, word));
         let known = drawn.iter().position(|line| line.name == group).unwrap_or_else(|| {
             let n = drawn.len() - 1;
-            let line = Line::new(group, Vec::new(), n).dashed(Dash::Nothing);
+            let line = Line::new(group, Vec::new(), n % 10).dashed(Dash::Nothing);
             drawn.push(line.marked(markers[n % markers.len()]));
             n + 1
         });

@@ -24,6 +24,8 @@ struct Sweep {
     /// Factors of the scene's cells from one up; below one are those of [`coarser`].
     refinements: &'static [f64],
     bases: &'static [&'static str],
+    /// Methods with a basis and an integrator of their own, each with the steps common to all.
+    others: &'static [&'static str],
     integrators: &'static [&'static str],
     particles_per_cell: &'static [usize],
     /// Every combination; otherwise one thing at a time.
@@ -34,6 +36,9 @@ const NEWMARK: &str = map::INTEGRATORS[0];
 const LINEAR: &str = "basis.kind=linear";
 const UGIMP: &str = "basis.kind=ugimp";
 const BSPLINE: &str = "basis.kind=bspline";
+const CUBIC: &str = "basis.kind=bspline basis.degree=3";
+const DDMP: &str = "basis.kind=ddmp";
+const GIMP: &str = "basis.kind=gimp";
 const LME_0_8: &str = "basis.kind=lme basis.gamma=0.8";
 const LME_0_8_SHORT: &str = "basis.kind=lme basis.gamma=0.8 basis.cutoff=0.01";
 const LME_1_8: &str = "basis.kind=lme basis.gamma=1.8";
@@ -42,7 +47,8 @@ const LME_6: &str = "basis.kind=lme basis.gamma=6";
 
 const QUICK: Sweep = Sweep {
     refinements: &[1.0, 2.0, 4.0],
-    bases: &[LINEAR, UGIMP, BSPLINE, LME_0_8, LME_0_8_SHORT, LME_1_8, LME_4],
+    bases: &[LINEAR, UGIMP, GIMP, BSPLINE, CUBIC, DDMP, LME_0_8, LME_0_8_SHORT, LME_1_8, LME_4],
+    others: &[],
     integrators: &[
         NEWMARK,
         "time.integrator=forward-euler time.stress_update=last",
@@ -57,7 +63,10 @@ const FULL: Sweep = Sweep {
     bases: &[
         LINEAR,
         UGIMP,
+        GIMP,
         BSPLINE,
+        CUBIC,
+        DDMP,
         "basis.kind=lme basis.gamma=0.4",
         LME_0_8,
         LME_0_8_SHORT,
@@ -66,6 +75,15 @@ const FULL: Sweep = Sweep {
         LME_4,
         "basis.kind=lme basis.gamma=4 basis.cutoff=0.01",
         LME_6,
+    ],
+    others: &[
+        "basis.kind=linear forces.reconstruction=tls time.integrator=newmark",
+        "basis.kind=bspline forces.reconstruction=tls time.integrator=newmark",
+        "basis.kind=bspline forces.reconstruction=mls time.integrator=newmark",
+        "basis.kind=ugimp filter=null-space time.integrator=newmark",
+        "basis.kind=linear time.integrator=implicit-newmark",
+        "basis.kind=gimp time.integrator=implicit-newmark",
+        "basis.kind=bspline time.integrator=implicit-newmark",
     ],
     integrators: &map::INTEGRATORS,
     particles_per_cell: &[1, 2, 4],
@@ -98,12 +116,19 @@ fn mpm(sweep: &Sweep) -> Vec<Scheme> {
                     }
                 }
                 // With one particle per cell the consistent matrix is nearly singular.
-                let own = [LINEAR, BSPLINE, LME_0_8, LME_1_8].contains(basis);
+                let own = [LINEAR, BSPLINE, CUBIC, DDMP, LME_0_8, LME_1_8].contains(basis);
                 if per_cell > 1 && (sweep.crossed || (usual && own)) {
                     for step in [Common(0.2), PartOfLimit(0.8)] {
                         add(format!("mass=consistent {basis} {integrator}"), per_cell, step);
                     }
                 }
+            }
+        }
+    }
+    for other in sweep.others {
+        for (mass, cfl) in [("lumped", 0.5), ("consistent", 0.2)] {
+            for &per_cell in sweep.particles_per_cell.iter().filter(|n| **n > 1) {
+                add(format!("mass={mass} {other}"), per_cell, Common(cfl));
             }
         }
     }

@@ -5,7 +5,8 @@ use crate::method::cost::Cost;
 // ANCHOR: weights
 /// Gives the work of a run (instructions, of 64-bit x86 and an optimised build), estimated from its
 /// counters alone. A consistent matrix has as many entries to add up as its pairs have pairs, and
-/// each of its solutions goes through all particles' nodes.
+/// each of its solutions goes through all particles' nodes; a tangent of an implicit step goes
+/// through all pairs of its table.
 ///
 /// The weights come from a fit to the runs in `data/instructions/work.csv`, which the book's chapter
 /// "Accuracy against cost" describes. Four of five are met to a fifth, the worst one to two thirds.
@@ -15,6 +16,7 @@ pub fn work(cost: &Cost) -> f64 {
     let [steps, rows, pairs] =
         [cost.steps, cost.basis_evaluations, cost.particle_node_pairs].map(|count| count as f64);
     let matrix = if cost.factorizations > 0 { pairs * pairs / rows.max(1.0) } else { 0.0 };
+    let tangents = cost.tangents as f64 * pairs / steps.max(1.0);
     let solves = cost.solves as f64 * rows / steps.max(1.0);
     3600.0 * steps
         + 350.0 * rows
@@ -23,5 +25,7 @@ pub fn work(cost: &Cost) -> f64 {
         + 287.0 * cost.candidates as f64
         + 156.0 * matrix
         + 362.0 * solves
+        + 250.0 * cost.filtered_stresses as f64
+        + 1250.0 * tangents
 }
 // ANCHOR_END: weights
