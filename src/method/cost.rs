@@ -2,8 +2,9 @@
 //!
 //! What is made holds the count of what it took to make it: the table of shape functions its
 //! rows and pairs, the working space of local max-ent its exponentials, iterations and
-//! candidates, the mass matrix its factorisations and solutions, the nodes their loads, the
-//! particles their filtered stresses, and the equations of an implicit step their iterations.
+//! candidates, the mass matrix its factorisations and solutions, the nodes their loads and fitted
+//! stresses, the particles their filtered stresses, and the equations of an implicit step their
+//! iterations.
 //! [`super::model::State::cost`] is their sum.
 
 /// These counters say what a run has cost.
@@ -25,6 +26,8 @@ pub struct Cost {
     pub tractions: u64,
     /// Stresses that the null-space filter has replaced: one per particle that shares its cell.
     pub filtered_stresses: u64,
+    /// Stresses that least squares took in: one per particle and fit of a reconstruction.
+    pub fitted_stresses: u64,
     /// Factorisations of the consistent mass matrix.
     pub factorizations: u64,
     /// Solutions with it, one per component.
@@ -44,12 +47,12 @@ pub struct Cost {
 
 impl Cost {
     /// Lists every counter with its name, in the order of `cost.csv`.
-    pub fn named(mut self) -> [(&'static str, u64); 15] {
+    pub fn named(mut self) -> [(&'static str, u64); 16] {
         self.places().map(|(name, count)| (name, *count))
     }
 
     /// Lists every counter with its name, to be set.
-    pub fn places(&mut self) -> [(&'static str, &mut u64); 15] {
+    pub fn places(&mut self) -> [(&'static str, &mut u64); 16] {
         [
             ("steps", &mut self.steps),
             ("basis_evaluations", &mut self.basis_evaluations),
@@ -59,6 +62,7 @@ impl Cost {
             ("body_forces", &mut self.body_forces),
             ("tractions", &mut self.tractions),
             ("filtered_stresses", &mut self.filtered_stresses),
+            ("fitted_stresses", &mut self.fitted_stresses),
             ("factorizations", &mut self.factorizations),
             ("solves", &mut self.solves),
             ("equilibrium_iterations", &mut self.equilibrium_iterations),

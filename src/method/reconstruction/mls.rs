@@ -11,10 +11,14 @@ use nalgebra::{SMatrix, SVector};
 // ANCHOR: mls
 /// Gives σ (Pa) at Gauss's points of a cell: about each one the particles within 3/2 h along
 /// every axis weigh as much as a quadratic B-spline there, w_p = Π_d B((x_p − x_g)_d / h_d), and
-/// the polynomials stand in (x − x_g)/h.
+/// the polynomials stand in (x − x_g)/h. `fitted` counts the stresses that it takes in.
 ///
 /// Test: `reconstruction_passes_polynomials_on`.
-pub fn stress<const D: usize>(cell: &Cell<D>, degree: usize) -> Vec<SMatrix<f64, D, D>> {
+pub fn stress<const D: usize>(
+    cell: &Cell<D>,
+    degree: usize,
+    fitted: &mut u64,
+) -> Vec<SMatrix<f64, D, D>> {
     let low = cell.index.map(|n| n.saturating_sub(2));
     let high: [usize; D] = std::array::from_fn(|d| (cell.index[d] + 2).min(cell.grid.cells[d] - 1));
     let around = || {
@@ -35,9 +39,9 @@ pub fn stress<const D: usize>(cell: &Cell<D>, degree: usize) -> Vec<SMatrix<f64,
                 }
             }
         }
+        *fitted += samples.len() as u64;
         let place = [SVector::zeros()];
-        let fitted = least_squares(&samples, &place, &move |xi| polynomials(xi, degree));
-        fitted.into_iter().sum()
+        least_squares(&samples, &place, &move |xi| polynomials(xi, degree)).into_iter().sum()
     };
     cell.points.iter().map(one).collect()
 }

@@ -119,8 +119,8 @@ pub fn internal_force<const D: usize>(
             continue;
         }
         let sigma = match of.rule {
-            Rule::Tls => tls::stress(&cell, of.degree),
-            Rule::Mls => mls::stress(&cell, of.degree),
+            Rule::Tls => tls::stress(&cell, of.degree, &mut node.cost.fitted_stresses),
+            Rule::Mls => mls::stress(&cell, of.degree, &mut node.cost.fitted_stresses),
         };
         for ((xi, weight), sigma_g) in points.iter().zip(sigma) {
             let row = tabulate(&mut table, of.functions, &cell, xi);
@@ -143,11 +143,22 @@ fn pull<const D: usize>(
     }
 }
 
-/// Lists Gauss's points of a cell: two along each axis for linear functions, three for B-splines.
+// ANCHOR: points
+/// Lists Gauss's points of a cell, at ξ in [−1, 1] with weights whose sum is 1: along each axis two
+/// for linear functions, three for cubic B-splines, and for quadratic ones, which have a knot in
+/// the middle of the cell, two in each half. So Σ_g w_g q(x_g) ∇N(x_g) is the integral for all
+/// polynomials q up to the degree 2, 1 for linear functions.
+///
+/// Test: `reconstruction_has_an_exact_quadrature`.
 pub fn points<const D: usize>(functions: Piecewise) -> Vec<(SVector<f64, D>, f64)> {
     let line = match functions {
         Piecewise::Linear => gauss(2),
-        Piecewise::BSpline(_) => gauss(3),
+        Piecewise::BSpline(Degree::Cubic) => gauss(3),
+        Piecewise::BSpline(Degree::Quadratic) => {
+            let half =
+                |middle: f64| gauss(2).into_iter().map(move |[r, w]| [middle + 0.5 * r, 0.5 * w]);
+            half(-0.5).chain(half(0.5)).collect()
+        }
     };
     let point = |i: [usize; D]| {
         let weight = i.iter().map(|i| 0.5 * line[*i][1]).product();
@@ -155,6 +166,7 @@ pub fn points<const D: usize>(functions: Piecewise) -> Vec<(SVector<f64, D>, f64
     };
     odometer([line.len(); D]).map(point).collect()
 }
+// ANCHOR_END: points
 
 /// Tabulates N_I and ∇N_I at the place ξ of a cell, and gives the number of the row.
 fn tabulate<const D: usize>(

@@ -31,12 +31,18 @@ fn samples<const D: usize>(cell: &Cell<D>, field: &[SMatrix<f64, D, D>]) -> Vec<
 
 // ANCHOR: tls
 /// Gives σ (Pa) at Gauss's points of a cell by unweighted least squares over its particles. It
-/// passes polynomials of its degree on as they are, and does not keep Σ_p V_p σ_p.
+/// passes polynomials of its degree on as they are, and does not keep Σ_p V_p σ_p. `fitted` counts
+/// the stresses that it takes in.
 ///
 /// Test: `reconstruction_passes_polynomials_on`.
-pub fn stress<const D: usize>(cell: &Cell<D>, degree: usize) -> Vec<SMatrix<f64, D, D>> {
+pub fn stress<const D: usize>(
+    cell: &Cell<D>,
+    degree: usize,
+    fitted: &mut u64,
+) -> Vec<SMatrix<f64, D, D>> {
     let places: Vec<_> = cell.points.iter().map(|(xi, _)| *xi).collect();
     let samples = samples(cell, &cell.particle.sigma);
+    *fitted += samples.len() as u64;
     least_squares(&samples, &places, &move |xi| polynomials(xi, degree))
 }
 // ANCHOR_END: tls
