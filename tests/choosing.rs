@@ -5,11 +5,9 @@ use crate::orders;
 use crate::support::lines::{Dash, Frame, Line, lines, slope_triangle};
 use crate::support::*;
 use kuva::prelude::MarkerShape::{self, *};
-use lme_mpm::method::time;
 use lme_mpm::study::choice::{self, CELLS, Choice, Chosen, GAMMAS};
 use lme_mpm::study::measured::{Criterion, Measured};
 use lme_mpm::study::ranking::{self, Tried, WallTime};
-use nalgebra::{DMatrix, DVector};
 use std::fmt::Write;
 
 /// What `lme-mpm choose` has written.
@@ -24,7 +22,7 @@ fn committed() -> Vec<(String, Chosen)> {
     reader.records().map(|record| row(record.unwrap())).collect()
 }
 
-/// The committed study has all rows in their order, none of them failed, and what takes little
+/// The committed study has all rows in their order, one of them failed, and what takes little
 /// comes out the same when it is run again: the first of every eight rows on 40 cells.
 #[test]
 fn choosing_is_current() {
@@ -32,7 +30,9 @@ fn choosing_is_current() {
     let choices = choice::choices().unwrap();
     let names: Vec<String> = choices.iter().map(Choice::name).collect();
     assert_eq!(study.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(), names);
-    assert!(study.iter().all(|(_, row)| row.measured.is_ok()));
+    let failed: Vec<&String> =
+        study.iter().filter(|(_, row)| row.measured.is_err()).map(|(name, _)| name).collect();
+    assert!(failed.len() == 1 && failed[0].contains("mls") && failed[0].contains("cells=640"));
     let cheap = |choice: &&Choice| {
         let value = |key| choice.configuration.value(key);
         let step: f64 = value("time.cfl").parse().unwrap();
@@ -52,6 +52,7 @@ fn choosing_is_current() {
 }
 
 /// A way to compute the bar, its name in the book, and its look.
+#[derive(Clone, Copy)]
 struct Way {
     name: &'static str,
     line: &'static str,
@@ -154,15 +155,24 @@ const WAYS: [Way; 10] = [
     },
 ];
 
-/// What the study has of a way on a grid.
-fn found(study: &[(String, Chosen)], speed: &str, way: &Way, cells: usize) -> Measured {
+/// What the study has of a way on a grid, or why it has nothing.
+fn row(
+    study: &[(String, Chosen)],
+    speed: &str,
+    way: &Way,
+    cells: usize,
+) -> Result<Measured, String> {
     let Way { line, node, per_cell, cfl, .. } = way;
     let end = if *node { "" } else { NO_NODE };
     let name = format!(
         "speed={speed} {line}{end} grid.cells={cells} grid.particles_per_cell={per_cell} time.cfl={cfl}"
     );
     let row = study.iter().find(|(known, _)| *known == name);
-    row.unwrap_or_else(|| panic!("no row `{name}`")).1.measured.clone().unwrap()
+    row.unwrap_or_else(|| panic!("no row `{name}`")).1.measured.clone()
+}
+
+fn found(study: &[(String, Chosen)], speed: &str, way: &Way, cells: usize) -> Measured {
+    row(study, speed, way, cells).unwrap()
 }
 
 fn followed(study: &[(String, Chosen)], speed: &str, way: &Way) -> [f64; 5] {
@@ -217,15 +227,16 @@ fn choosing_on_640_cells() {
         writeln!(table, "{},{},{list}", way.name, way.cfl).unwrap();
     }
     approve("choosing__cells", &table);
-    approve_picture("choosing__convergence", convergence(&errors));
+    approve_picture("choosing__convergence", convergence(WAYS.iter().zip(errors)));
 }
 
-fn convergence(errors: &[[f64; 5]]) -> String {
-    let mut drawn: Vec<Line> = WAYS
-        .iter()
-        .zip(errors)
+/// Draws errors over the number of cells, as many as there are.
+fn convergence<'a, E: IntoIterator<Item = f64>>(
+    followed: impl Iterator<Item = (&'a Way, E)>,
+) -> String {
+    let mut drawn: Vec<Line> = followed
         .map(|(way, errors)| {
-            let points = CELLS.iter().map(|n| *n as f64).zip(*errors).collect();
+            let points = CELLS.iter().map(|n| *n as f64).zip(errors).collect();
             let (colour, dash, marker) = way.look;
             Line::new(way.name, points, colour).dashed(dash).marked(marker)
         })
@@ -242,6 +253,73 @@ fn convergence(errors: &[[f64; 5]]) -> String {
         notes: vec![third_words, half_words],
     };
     lines(&drawn, &frame)
+}
+
+/// Cures of crossing, on this bar where nothing crosses, beside the functions that they start from.
+const CURES: [Way; 7] = [
+    WAYS[0],
+    Way {
+        name: "dual domain lumped",
+        line: "method=mpm mass=lumped basis.kind=ddmp time.integrator=newmark",
+        look: (3, Dash::Solid, Triangle),
+        ..WAYS[0]
+    },
+    WAYS[1],
+    Way {
+        name: "dual domain consistent",
+        line: "method=mpm mass=consistent basis.kind=ddmp time.integrator=newmark",
+        look: (1, Dash::Solid, Diamond),
+        ..WAYS[1]
+    },
+    Way {
+        name: "implicit linear consistent",
+        line: "method=mpm mass=consistent basis.kind=linear time.integrator=implicit-newmark",
+        cfl: 0.5,
+        look: (7, Dash::Dashed, Cross),
+        ..WAYS[1]
+    },
+    WAYS[3],
+    Way {
+        name: "B-splines + MLS consistent",
+        line: "method=mpm mass=consistent basis.kind=bspline forces.reconstruction=mls \
+               time.integrator=newmark",
+        look: (9, Dash::Dashed, TriangleDown),
+        ..WAYS[3]
+    },
+];
+
+/// What cures of crossing do on the bar. The dual domain with the consistent matrix has less than two
+/// thirds of the linear basis's error on 40 to 160 cells, and does not fall from 80 to 640, to a
+/// twelfth. A stress by moving least squares is ahead of the sum over particles by a tenth and more on
+/// 40 to 160 cells and level on 320; on 640 its energy grows beyond what `check.energy` allows, and
+/// the run ends. Implicit steps two and a half times as long cost nothing in accuracy: a twentieth to a
+/// seventh less error than the explicit ones.
+#[test]
+fn choosing_cures() {
+    let study = committed();
+    let errors: Vec<Vec<f64>> = CURES
+        .iter()
+        .map(|way| CELLS.iter().map_while(|n| row(&study, "5", way, *n).ok()))
+        .map(|measured| measured.map(|measured| measured.velocity).collect())
+        .collect();
+    let [_, _, linear, dual, implicit, spline, fitted] = &errors[..] else { panic!("seven ways") };
+    let least = dual[1..].iter().fold(f64::INFINITY, |a, b| a.min(*b));
+    assert!((0..3).all(|n| dual[n] < 2.0 / 3.0 * linear[n]), "{dual:?}");
+    assert!(dual[1..].iter().all(|error| *error < 13.0 / 12.0 * least), "{dual:?}");
+    assert!((0..3).all(|n| fitted[n] < 0.91 * spline[n]), "{fitted:?} {spline:?}");
+    assert!(fitted.len() == 4 && fitted[3] < 0.93 * spline[3], "{fitted:?} {spline:?}");
+    let problem = row(&study, "5", &CURES[6], 640).unwrap_err();
+    assert!(problem.contains("check.energy"), "{problem}");
+    let times = |n: usize| implicit[n] / linear[n];
+    assert!((0..5).all(|n| times(n) < 0.95 && times(n) > 6.0 / 7.0), "{implicit:?} {linear:?}");
+    let mut table = String::from("way,c Δt/h,40 cells,80 cells,160 cells,320 cells,640 cells\n");
+    for (way, errors) in CURES.iter().zip(&errors) {
+        let mut cells: Vec<String> = errors.iter().map(|error| format!("{error:.4}")).collect();
+        cells.resize(5, "ends".to_string());
+        writeln!(table, "{},{},{}", way.name, way.cfl, cells.join(",")).unwrap();
+    }
+    approve("choosing__cures", &table);
+    approve_picture("choosing__cures_figure", convergence(CURES.iter().zip(errors)));
 }
 
 /// The velocity errors of local max-ent with the consistent matrix over γ.
@@ -589,105 +667,4 @@ fn choosing_verdicts() {
         crossed,
     );
     approve("choosing__verdicts", &table);
-}
-
-/// Finite elements are OTM with the linear basis: nodes that start alike move as those of a chain
-/// of springs E/h with masses ρh, half of it at the ends, by central differences, to 1e-8 of the
-/// speed after a crossing of 20 cells.
-#[test]
-fn choosing_finite_elements_are_a_chain() {
-    let sets = [
-        "method=otm",
-        "grid.cells=20",
-        "grid.particles_per_cell=1",
-        "initial_velocity.0.velocity=1e-7",
-        "time.end=2.6e-5",
-    ];
-    let scene = dyka(&sets);
-    let (model, mut state) = at_start::<1>(&scene);
-    let n = 20;
-    let h = 0.1333 / 20.0;
-    let (stiffness, mass) = (200e9 / h, 7833.0 * h);
-    time::start(&mut state, &model, &mut |_, _| {}).unwrap();
-    let start: Vec<f64> = state.node.v.iter().map(|v| v[0]).collect();
-    let (mut u, mut v) = (vec![0.0; n + 1], start);
-    let acceleration = |u: &[f64]| -> Vec<f64> {
-        let pull = |I: usize| stiffness * (u[I + 1] - u[I]);
-        let force = |I: usize| match I {
-            0 => 0.0,
-            I if I == n => -pull(n - 1) * 2.0,
-            I => pull(I) - pull(I - 1),
-        };
-        (0..=n).map(|I| force(I) / mass).collect()
-    };
-    for step in 1..=model.steps {
-        advance(&model, &mut state, step).unwrap();
-        let before = acceleration(&u);
-        for I in 0..=n {
-            v[I] += 0.5 * model.dt * before[I];
-            u[I] += model.dt * v[I];
-        }
-        let after = acceleration(&u);
-        (0..=n).for_each(|I| v[I] += 0.5 * model.dt * after[I]);
-    }
-    let own: Vec<f64> = state.node.v.iter().map(|v| v[0]).collect();
-    assert_eq!(own.len(), n + 1);
-    assert!(apart(&own, &v) < 1e-8 * 1e-7, "{own:?} {v:?}");
-}
-
-/// Linear finite elements with the consistent matrix are MPM with the consistent matrix and
-/// particles at Gauss points: the stress of every element after a crossing of 20 cells is that of
-/// a dense computation with ρh/6 (2, 1; 1, 2), to 1e-7 of the plateau.
-#[test]
-fn choosing_gauss_points_make_finite_elements() {
-    let sets = [
-        CONSISTENT.sets,
-        &["grid.cells=20", "initial_velocity.0.velocity=1e-7", "time.end=2.6e-5", "time.cfl=0.2"],
-        &["grid.beyond={right=0}"],
-    ];
-    let mut scene = dyka(&sets.concat());
-    // From a quarter of a cell to 1/2 − 1/(2√3), in units of the particles' distance.
-    scene.grid.offset = (0.5 - 0.5 / 3.0_f64.sqrt() - 0.25) / 0.5;
-    let (model, mut state) = at_start::<1>(&scene);
-    let n = 20;
-    let h = 0.1333 / 20.0;
-    let mut mass = DMatrix::<f64>::zeros(n, n);
-    let mut stiffness = DMatrix::<f64>::zeros(n, n);
-    let mut momentum = DVector::<f64>::zeros(n);
-    // Node 0 is fixed and left out.
-    for cell in 0..n {
-        for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-            if cell + a > 0 && cell + b > 0 {
-                let alike = a == b;
-                mass[(cell + a - 1, cell + b - 1)] += 7833.0 * h / if alike { 3.0 } else { 6.0 };
-                stiffness[(cell + a - 1, cell + b - 1)] +=
-                    200e9 / h * if alike { 1.0 } else { -1.0 };
-            }
-        }
-    }
-    let table = on_grid(&model.basis, &model.grid, &state.particle.x).unwrap().shape;
-    for p in 0..state.particle.len() {
-        for (I, N, _) in table.of(p) {
-            if I > 0 {
-                momentum[I - 1] += N * state.particle.m[p] * state.particle.v[p][0];
-            }
-        }
-    }
-    let inverse = mass.try_inverse().unwrap();
-    let (mut u, mut v) = (DVector::<f64>::zeros(n), &inverse * momentum);
-    let turn = -(&inverse * stiffness);
-    march(&model, &mut state, model.steps);
-    for _ in 0..model.steps {
-        v += 0.5 * model.dt * (&turn * &u);
-        u += model.dt * &v;
-        v += 0.5 * model.dt * (&turn * &u);
-    }
-    let stress = |cell: usize| {
-        let left = if cell == 0 { 0.0 } else { u[cell - 1] };
-        200e9 * (u[cell] - left) / h
-    };
-    let expected: Vec<f64> = (0..2 * n).map(|p| stress(p / 2)).collect();
-    let own: Vec<f64> = state.particle.sigma.iter().map(|sigma| sigma[0]).collect();
-    let plateau = 0.5 * 1e-7 * (200e9_f64 * 7833.0).sqrt();
-    assert!(apart(&own, &expected) < 1e-7 * plateau, "{:e}", apart(&own, &expected) / plateau);
 }

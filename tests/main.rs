@@ -24,6 +24,7 @@ mod figures_lme;
 mod figures_otm;
 mod figures_weak_form;
 mod finite;
+mod finite_elements;
 mod first_use;
 mod fronts;
 mod fuzz;

@@ -5,13 +5,13 @@ use crate::support::lines::{Dash, Frame, Line, lines};
 use crate::support::*;
 use approx::assert_relative_eq;
 use kuva::prelude::MarkerShape::{self, *};
-use lme_mpm::method::choice::{Integrator, Method};
+use lme_mpm::method::choice::Method;
 use lme_mpm::method::model::State;
-use lme_mpm::method::reading::Kinematics;
+use lme_mpm::method::time::scheme::Factor;
 use lme_mpm::method::time::{otm, steps};
 use lme_mpm::run::stability::{
-    OfScheme, Operator, Tridiagonal, at_offset, critical, grows, limit, measured, noise,
-    over_offsets, predicted,
+    Operator, Tridiagonal, at_offset, critical, grows, limit, measured, noise, over_offsets,
+    predicted,
 };
 use lme_mpm::scene::{DYKA, Scene, wave_speed};
 use nalgebra::{DMatrix, DVector, Matrix1, SymmetricEigen, Vector2};
@@ -310,10 +310,7 @@ fn stability_factor_of_generalized_alpha() {
     };
     let points = || (0..=2000).map(|n| 1.0 - (f64::from(n) / 2000.0).powi(4));
     let g = |rho_b: f64| {
-        let factor = OfScheme::of(
-            Method::Mpm(Integrator::GeneralizedAlpha { rho_b }),
-            Kinematics::AsPrinted,
-        );
+        let factor = Factor::Alpha { rho_b };
         (factor, factor.chebyshev())
     };
     for rho in rho_b {

@@ -5,9 +5,7 @@
 //! has made.
 
 use crate::method::breakdown::{BrokenDown, Moment};
-use crate::method::choice::{Integrator, Method};
 use crate::method::model::{Model, State};
-use crate::method::reading::{Kinematics, NodalMass, StressUpdate};
 use crate::method::time;
 use crate::scene::Scene;
 use crate::scene::fault::Fault;
@@ -67,9 +65,6 @@ pub fn trace_in<const D: usize>(
             0 => time::start(&mut state, &model, &mut after),
             _ => time::advance(&mut state, &model, moment.time, &mut after),
         };
-        if k == 0 && starts_with_acceleration(model.method) {
-            recorder.at(0, 0).symbol("a_p", &state, &model, 0.0);
-        }
         // A number that is none stands in the trace before the step that stumbles over it.
         recorder.finite().and(done).map_err(|what| what.at(moment))?;
     }
@@ -84,83 +79,9 @@ impl TraceRecorder {
             _ => time::time_of_loads(model.method, model.dt, Moment::of(k, model.dt).time),
         };
         self.at(k, n);
-        for symbol in made_by(model.method, model.kinematics, n) {
+        let made = time::scheme::<D>(model.method).makes(model.kinematics);
+        for symbol in made[n] {
             self.symbol(symbol, state, model, loads_at);
         }
     }
-}
-
-/// Tells whether the start has made an acceleration that no step of it shows.
-fn starts_with_acceleration(method: Method) -> bool {
-    method.needs().mapped_acceleration
-}
-
-/// Lists the symbols that step `n` of a method makes, in the paper's order: one table, which is
-/// why this function is long.
-fn made_by(method: Method, kinematics: Kinematics, n: usize) -> &'static [&'static str] {
-    const NONE: &[&str] = &[];
-    const TABLE: &[&str] = &["N_Ip", "grad_N_Ip", "lambda"];
-    const RENEWED: &[&str] = &["N_Ip", "grad_N_Ip", "lambda", "m_I", "v_I"];
-    const MAPPED: &[&str] = &["m_I", "p_I"];
-    const FORCES: &[&str] = &["f_int_I", "f_ext_I", "f_I"];
-    const ADVANCED: &[&str] = &["p_I_advanced"];
-    const MOVED: &[&str] = &["v_p", "x_p"];
-    const MOVED_WITH_A: &[&str] = &["a_p", "v_p", "x_p"];
-    const MATERIAL: &[&str] = &["G_p", "d_eps_p", "F_p", "rho_p", "sigma_p"];
-    const STRAINED: &[&str] = &["v_I", "G_p", "d_eps_p", "F_p", "rho_p", "sigma_p"];
-    const STRAINED_LAST: &[&[&str]] =
-        &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, MATERIAL];
-    let steps: &[&[&str]] = match method {
-        Method::Otm(masses) => &[
-            &["N_Ip", "grad_N_Ip", "lambda", "m_I", "v_I", "f_int_I", "f_ext_I", "f_I"],
-            &["v_I"],
-            &["x_I"],
-            &["x_p"],
-            MATERIAL,
-            if masses == NodalMass::Kept { TABLE } else { RENEWED },
-            FORCES,
-            &["v_I", "v_p"],
-        ],
-        Method::Mpm(integrator) => match integrator {
-            Integrator::Newmark(_) => &[
-                NONE,
-                &["x_p", "v_p"],
-                TABLE,
-                MAPPED,
-                &["v_I"],
-                &["G_p", "d_eps_p_printed"],
-                &["d_eps_p_of_map", "F_p", "rho_p", "sigma_p"],
-                FORCES,
-                ADVANCED,
-                &["a_p", "v_p"],
-            ],
-            Integrator::ForwardEuler(_) | Integrator::CorrectedEuler
-                if kinematics == Kinematics::Consistent =>
-            {
-                STRAINED_LAST
-            }
-            Integrator::ForwardEuler(StressUpdate::First) => {
-                &[NONE, TABLE, MAPPED, STRAINED, FORCES, ADVANCED, MOVED, NONE]
-            }
-            Integrator::ForwardEuler(StressUpdate::Last) => STRAINED_LAST,
-            Integrator::ForwardEuler(StressUpdate::ModifiedLast) | Integrator::CorrectedEuler => {
-                &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, STRAINED]
-            }
-            Integrator::GeneralizedAlpha { .. } => &[
-                NONE,
-                TABLE,
-                MAPPED,
-                &["a_I", "v_I"],
-                FORCES,
-                &["a_I_next"],
-                MOVED_WITH_A,
-                STRAINED,
-            ],
-            Integrator::ImplicitNewmark => {
-                &[NONE, TABLE, MAPPED, &["a_I", "v_I"], NONE, MOVED_WITH_A, MATERIAL]
-            }
-            Integrator::QuasiStatic => &[NONE, TABLE, &["m_I"], NONE, &["x_p"], MATERIAL],
-        },
-    };
-    steps.get(n).copied().unwrap_or(NONE)
 }

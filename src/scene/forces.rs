@@ -1,7 +1,7 @@
 //! Reads how the internal forces are integrated, and refuses what has no such quadrature.
 
 use super::fault::SceneError;
-use super::implicit::IMPLICIT;
+use super::scheme::is_implicit;
 use super::values::Values;
 use crate::method::basis::Basis;
 use crate::method::reconstruction::{Piecewise, Reconstruction, Rule};
@@ -43,7 +43,7 @@ pub fn forces(values: &Values, basis: Basis) -> Result<Option<Reconstruction>, B
 fn scheme(values: &Values) -> Result<(), Box<SceneError>> {
     let problem = if values.word("method")? == "otm" {
         "the method \"otm\" has Gauss's points already, which keep their stress"
-    } else if IMPLICIT.contains(&values.word("time.integrator")?) {
+    } else if is_implicit(values)? {
         "an implicit scheme needs the tangent of the forces, which is made of sums"
     } else {
         let keys = ["time.fraction_of_critical", "time.watch", "time.allow_unstable"];

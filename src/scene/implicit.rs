@@ -3,10 +3,8 @@
 use super::fault::SceneError;
 use super::keys::AXES;
 use super::parts::Side;
+use super::scheme::is_implicit;
 use super::values::Values;
-
-/// These schemes solve for the nodal displacements.
-pub const IMPLICIT: [&str; 2] = ["implicit-newmark", "quasi-static"];
 
 const NO_LIMIT: &str = "no time step is too large to be stable";
 const NO_INERTIA: &str = "there is no inertia, and so no motion but that of the loads";
@@ -34,8 +32,7 @@ const REFUSED_AT_REST: [(&str, &str); 7] = [
 ///
 /// Test: `implicit_refuses_what_makes_no_sense`.
 pub fn implicit(values: &Values, boundary: &[[Side; 2]]) -> Result<(), Box<SceneError>> {
-    let word = values.word("time.integrator")?;
-    if !IMPLICIT.contains(&word) {
+    if !is_implicit(values)? {
         return Ok(());
     }
     refuse_keys(values, &REFUSED)?;
@@ -43,7 +40,7 @@ pub fn implicit(values: &Values, boundary: &[[Side; 2]]) -> Result<(), Box<Scene
         let problem = "the strain is always that of the map which moves the particles";
         return Err(refused(values, ["time.kinematics"; 2], problem, "\"consistent\""));
     }
-    if word != "quasi-static" {
+    if values.word("time.integrator")? != "quasi-static" {
         return Ok(());
     }
     refuse_keys(values, &REFUSED_AT_REST)?;

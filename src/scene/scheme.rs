@@ -1,7 +1,6 @@
 //! Reads basis and integrator of a scene, and refuses what OTM cannot do.
 
 use super::fault::SceneError;
-use super::implicit::IMPLICIT;
 use super::parts::{GridSpec, Time};
 use super::values::Values;
 use crate::method::basis::{Basis, Degree, Support};
@@ -60,10 +59,15 @@ pub fn integrator(values: &Values) -> Result<Integrator, Box<SceneError>> {
     }
 }
 
+/// Says whether the scheme solves for the nodal displacements.
+pub fn is_implicit(values: &Values) -> Result<bool, Box<SceneError>> {
+    Ok(integrator(values)?.needs().equilibrium)
+}
+
 /// Reads which map the strain is taken from; that of an implicit scheme is always the one that
 /// moves the particles.
 pub fn kinematics(values: &Values) -> Result<Kinematics, Box<SceneError>> {
-    if IMPLICIT.contains(&values.word("time.integrator")?) {
+    if is_implicit(values)? {
         return Ok(Kinematics::Consistent);
     }
     let readings = [("as-printed", Kinematics::AsPrinted), ("consistent", Kinematics::Consistent)];
@@ -75,14 +79,13 @@ pub fn kinematics(values: &Values) -> Result<Kinematics, Box<SceneError>> {
 pub fn filter(values: &Values) -> Result<Option<Filter>, Box<SceneError>> {
     let filters = [("none", None), ("null-space", Some(Filter::NullSpace))];
     let filter = values.choose("filter", &filters)?;
-    let integrator = values.word("time.integrator")?;
     let problem = if filter.is_none() {
         return Ok(None);
     } else if values.word("method")? == "otm" {
         "with the method \"otm\" there is no cell that holds particles for a while"
     } else if values.word("body.law")? != "rate" {
         "the law takes the stress from the deformation gradient anew in each step"
-    } else if IMPLICIT.contains(&integrator) {
+    } else if is_implicit(values)? {
         "an implicit integrator balances the stresses before the filter"
     } else {
         return Ok(filter);

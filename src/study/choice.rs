@@ -26,6 +26,8 @@ pub const NO_NODE: &str = "grid.beyond={right=0}";
 /// A way is a line of `KEY=VALUE` without cells, particles and time step.
 const FINITE_ELEMENTS: &str = "method=otm mass=lumped basis.kind=linear time.integrator=newmark";
 const OTM: &str = "method=otm mass=lumped basis.kind=lme basis.gamma=4 time.integrator=newmark";
+const IMPLICIT: &str =
+    "method=mpm mass=consistent basis.kind=linear time.integrator=implicit-newmark";
 
 fn mpm(mass: &str, basis: &str) -> String {
     format!("method=mpm mass={mass} basis.kind={basis} time.integrator=newmark")
@@ -77,7 +79,7 @@ impl Choices {
         Ok(())
     }
 
-    /// Adds the ways whose errors are followed to 640 cells: every method and basis, with a common
+    /// Adds the ways whose errors are followed to 640 cells: methods and bases, with a common
     /// time step for each mass matrix; with a small one; with no node beyond the free end; and the
     /// bar that hardly moves.
     fn finer_and_finer(&mut self) -> Result<(), Fault> {
@@ -97,6 +99,12 @@ impl Choices {
             {
                 self.add("5", &mpm("consistent", basis), [n, 2], 0.2)?;
             }
+            self.add("5", &mpm("lumped", "ddmp"), [n, 2], 0.5)?;
+            let fitted = "bspline forces.reconstruction=mls";
+            for basis in ["ddmp", fitted] {
+                self.add("5", &mpm("consistent", basis), [n, 2], 0.2)?;
+            }
+            self.add("5", IMPLICIT, [n, 2], 0.5)?;
             for way in [&spline, &wide] {
                 self.add("5", way, [n, 2], 0.05)?;
                 for cfl in [0.2, 0.05] {

@@ -10,11 +10,8 @@ mod printed;
 
 use crate::support::kit::{BAR, BLOCK, Base, STRIP, TWO_DISCS};
 use crate::support::*;
-use lme_mpm::method::choice::{Integrator, Method};
 use lme_mpm::method::model::{Model, State};
-use lme_mpm::method::time::{
-    self, euler, generalized_alpha, implicit_newmark, newmark, otm, quasi_static,
-};
+use lme_mpm::method::time;
 use lme_mpm::port::check::{Tolerance, compare};
 use lme_mpm::port::trace::{self, Entry, TraceRecorder};
 use lme_mpm::scene::Scene;
@@ -65,28 +62,7 @@ pub struct Mistake<const D: usize> {
 /// Takes step `at.n` of the model's scheme as the library does.
 fn right_step<const D: usize>(at: &At<D>, state: &mut State<D>) -> bool {
     let At { n, dt, t, model, .. } = *at;
-    let done = match model.method {
-        Method::Otm(masses) => otm::step(n, state, model, masses, dt, t),
-        Method::Mpm(integrator) => match integrator {
-            Integrator::Newmark(reading) => newmark::step(n, state, model, reading, dt, t),
-            Integrator::ForwardEuler(order) => euler::forward_step(n, state, model, order, dt, t),
-            Integrator::CorrectedEuler => euler::corrected_step(n, state, model, dt, t),
-            Integrator::GeneralizedAlpha { rho_b } => {
-                generalized_alpha::step(n, state, model, rho_b, dt, t)
-            }
-            Integrator::ImplicitNewmark => implicit_newmark::step(n, state, model, dt, t),
-            Integrator::QuasiStatic => quasi_static::step(n, state, model, t),
-        },
-    };
-    done.is_ok()
-}
-
-fn steps_of(method: Method) -> usize {
-    match method {
-        Method::Otm(_) => otm::STEPS,
-        Method::Mpm(Integrator::Newmark(_)) => newmark::STEPS,
-        Method::Mpm(_) => euler::STEPS,
-    }
+    time::scheme::<D>(model.method).step(n, state, model, dt, t).is_ok()
 }
 
 /// The trace of a port that marches with a mistake, or without one.
@@ -95,23 +71,20 @@ fn marched<const D: usize>(scene: &Scene, steps: usize, seed: Option<&Seed<D>>) 
     if let Some(Seed::Start(change)) = seed {
         change(&mut model, &mut state);
     }
+    let scheme = time::scheme::<D>(model.method);
     let mut recorder = TraceRecorder::default();
     recorder.given(scene, &state, &model);
     // A port prints what it was given, not what it has taken for it.
     recorder.entries.retain(|entry| entry.symbol != "gamma");
     for k in 0..=steps {
         let (dt, t) = if k == 0 { (0.0, 0.0) } else { (model.dt, k as f64 * model.dt) };
-        let is_newmark = matches!(model.method, Method::Mpm(Integrator::Newmark(_)));
-        if k == 0 && !is_newmark {
+        if k == 0 && !scheme.starts_with_all_steps() {
             let mut after = |n: usize, state: &State<D>| recorder.step(0, n, state, &model);
             time::start(&mut state, &model, &mut after).unwrap();
-            if let Method::Mpm(Integrator::GeneralizedAlpha { .. }) = model.method {
-                recorder.at(0, 0).symbol("a_p", &state, &model, 0.0);
-            }
             continue;
         }
         let past = state.clone();
-        for n in 1..=steps_of(model.method) {
+        for n in 1..scheme.makes(model.kinematics).len() {
             let t = time::time_of_loads(model.method, dt, t);
             let at = At { k, n, dt, t, model: &model, past: &past };
             let done = matches!(seed, Some(Seed::Instead(step)) if step(&at, &mut state));

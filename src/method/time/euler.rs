@@ -5,13 +5,13 @@
 //! advanced one; as (21) is printed they would move with the old. Then (20)-(21) and (22)-(23) are the same sums. The corrected form
 //! takes the strain from the momentum of the particles, mapped anew.
 
+use super::scheme::{
+    ADVANCED, FORCES, Factor, MAPPED, MATERIAL, MOVED, Made, NONE, STRAINED, Scheme, TABLE,
+};
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::model::{Model, State};
 use crate::method::reading::{Kinematics, StressUpdate};
-
-/// Both forms have so many steps.
-pub const STEPS: usize = 7;
 
 // ANCHOR: forward_euler
 /// Takes step `n` of forward Euler, 1 to 7, in the time step from k to k+1; loads are those of
@@ -94,3 +94,67 @@ pub fn corrected_step<const D: usize>(
     Ok(())
 }
 // ANCHOR_END: corrected_euler
+
+const STRAINED_LAST: &[Made] = &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, MATERIAL];
+const STRAINED_BY_MAP: &[Made] =
+    &[NONE, TABLE, MAPPED, &["v_I"], FORCES, ADVANCED, MOVED, STRAINED];
+
+/// This is forward Euler, with one of three orders.
+pub struct ForwardEuler(pub StressUpdate);
+
+impl<const D: usize> Scheme<D> for ForwardEuler {
+    fn makes(&self, kinematics: Kinematics) -> &'static [Made] {
+        match (kinematics, self.0) {
+            (Kinematics::Consistent, _) | (_, StressUpdate::Last) => STRAINED_LAST,
+            (_, StressUpdate::First) => {
+                &[NONE, TABLE, MAPPED, STRAINED, FORCES, ADVANCED, MOVED, NONE]
+            }
+            (_, StressUpdate::ModifiedLast) => STRAINED_BY_MAP,
+        }
+    }
+
+    fn step(
+        &self,
+        n: usize,
+        state: &mut State<D>,
+        model: &Model<D>,
+        dt: f64,
+        t: f64,
+    ) -> Result<(), Breakdown> {
+        forward_step(n, state, model, self.0, dt, t)
+    }
+
+    fn factor(&self, kinematics: Kinematics) -> Factor {
+        match self.0 {
+            StressUpdate::Last => Factor::Last,
+            StressUpdate::First | StressUpdate::ModifiedLast => Factor::of_strain(kinematics),
+        }
+    }
+}
+
+/// This is its corrected form.
+pub struct CorrectedEuler;
+
+impl<const D: usize> Scheme<D> for CorrectedEuler {
+    fn makes(&self, kinematics: Kinematics) -> &'static [Made] {
+        match kinematics {
+            Kinematics::AsPrinted => STRAINED_BY_MAP,
+            Kinematics::Consistent => STRAINED_LAST,
+        }
+    }
+
+    fn step(
+        &self,
+        n: usize,
+        state: &mut State<D>,
+        model: &Model<D>,
+        dt: f64,
+        t: f64,
+    ) -> Result<(), Breakdown> {
+        corrected_step(n, state, model, dt, t)
+    }
+
+    fn factor(&self, kinematics: Kinematics) -> Factor {
+        Factor::of_strain(kinematics)
+    }
+}

@@ -1,16 +1,15 @@
 //! This is the explicit generalized-α scheme of Hulbert and Chung (1996) for particles,
 //! (24)-(26), with the balance and the parameters that the paper leaves out.
 
+use super::scheme::{FORCES, Factor, MAPPED, MOVED_WITH_A, Made, STRAINED, Scheme, TABLE};
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::{Nodes, Particles};
 use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
+use crate::method::reading::Kinematics;
 use nalgebra::SVector;
-
-/// The scheme has so many steps.
-pub const STEPS: usize = 7;
 
 // ANCHOR: alpha_parameters
 /// The parameters follow from ρ_b, the spectral radius at the bifurcation, 0 to 1.
@@ -133,3 +132,36 @@ pub fn average_velocity<const D: usize>(node: &mut Nodes<D>, parameters: &Parame
     }
 }
 // ANCHOR_END: generalized_alpha
+
+/// This is the scheme of one ρ_b.
+pub struct GeneralizedAlpha {
+    pub rho_b: f64,
+}
+
+impl<const D: usize> Scheme<D> for GeneralizedAlpha {
+    fn makes(&self, _: Kinematics) -> &'static [Made] {
+        &[&["a_p"], TABLE, MAPPED, &["a_I", "v_I"], FORCES, &["a_I_next"], MOVED_WITH_A, STRAINED]
+    }
+
+    fn start(&self, state: &mut State<D>, model: &Model<D>) -> Result<(), Breakdown> {
+        match model.loads {
+            Some(_) => start(state, model),
+            None => Ok(()),
+        }
+    }
+
+    fn step(
+        &self,
+        n: usize,
+        state: &mut State<D>,
+        model: &Model<D>,
+        dt: f64,
+        t: f64,
+    ) -> Result<(), Breakdown> {
+        step(n, state, model, self.rho_b, dt, t)
+    }
+
+    fn factor(&self, _: Kinematics) -> Factor {
+        Factor::Alpha { rho_b: self.rho_b }
+    }
+}

@@ -5,22 +5,14 @@
 
 use super::equilibrium::balance;
 use super::generalized_alpha;
+use super::scheme::{Factor, MAPPED, MATERIAL, MOVED_WITH_A, Made, NONE, Scheme, TABLE};
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::{Nodes, Particles};
 use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
-
-/// The scheme has so many steps.
-pub const STEPS: usize = 6;
-
-/// Gives a_p at k = 0, that of the forces there.
-///
-/// Errors: those of a table and of a mass matrix.
-pub fn start<const D: usize>(state: &mut State<D>, model: &Model<D>) -> Result<(), Breakdown> {
-    generalized_alpha::start(state, model)
-}
+use crate::method::reading::Kinematics;
 
 // ANCHOR: implicit_newmark
 /// Takes step `n` of the scheme, 1 to 6, in the time step from k to k+1 that ends at `t` (s).
@@ -83,3 +75,31 @@ pub fn move_particles<const D: usize>(
     }
 }
 // ANCHOR_END: implicit_newmark
+
+/// This is the scheme.
+pub struct ImplicitNewmark;
+
+impl<const D: usize> Scheme<D> for ImplicitNewmark {
+    fn makes(&self, _: Kinematics) -> &'static [Made] {
+        &[&["a_p"], TABLE, MAPPED, &["a_I", "v_I"], NONE, MOVED_WITH_A, MATERIAL]
+    }
+
+    fn start(&self, state: &mut State<D>, model: &Model<D>) -> Result<(), Breakdown> {
+        generalized_alpha::start(state, model)
+    }
+
+    fn step(
+        &self,
+        n: usize,
+        state: &mut State<D>,
+        model: &Model<D>,
+        dt: f64,
+        t: f64,
+    ) -> Result<(), Breakdown> {
+        step(n, state, model, dt, t)
+    }
+
+    fn factor(&self, _: Kinematics) -> Factor {
+        Factor::Unlimited
+    }
+}

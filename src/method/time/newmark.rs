@@ -2,13 +2,11 @@
 //! central difference (27)-(29).
 
 use super::deformation::gradient_of_predictor;
+use super::scheme::{ADVANCED, FORCES, Factor, MAPPED, Made, NONE, Scheme, TABLE};
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::model::{Model, State};
 use crate::method::reading::{Kinematics, StepEight};
-
-/// The Algorithm has so many steps.
-pub const STEPS: usize = 9;
 
 // ANCHOR: newmark
 /// Takes step `n` of the Algorithm, 1 to 9, in the time step from k to k+1 that ends at `t` (s).
@@ -53,3 +51,42 @@ pub fn step<const D: usize>(
     Ok(())
 }
 // ANCHOR_END: newmark
+
+/// This is the Algorithm, with one of two readings of step 8.
+pub struct Newmark(pub StepEight);
+
+impl<const D: usize> Scheme<D> for Newmark {
+    fn makes(&self, _: Kinematics) -> &'static [Made] {
+        &[
+            NONE,
+            &["x_p", "v_p"],
+            TABLE,
+            MAPPED,
+            &["v_I"],
+            &["G_p", "d_eps_p_printed"],
+            &["d_eps_p_of_map", "F_p", "rho_p", "sigma_p"],
+            FORCES,
+            ADVANCED,
+            &["a_p", "v_p"],
+        ]
+    }
+
+    fn starts_with_all_steps(&self) -> bool {
+        true
+    }
+
+    fn step(
+        &self,
+        n: usize,
+        state: &mut State<D>,
+        model: &Model<D>,
+        dt: f64,
+        t: f64,
+    ) -> Result<(), Breakdown> {
+        step(n, state, model, self.0, dt, t)
+    }
+
+    fn factor(&self, kinematics: Kinematics) -> Factor {
+        Factor::of_strain(kinematics)
+    }
+}

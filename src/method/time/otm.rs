@@ -6,6 +6,7 @@
 //! every step. Time goes by central differences, as in [`crate::method::time::newmark`].
 
 use super::deformation::deform;
+use super::scheme::{FORCES, Factor, MATERIAL, Made, Scheme, TABLE};
 use super::steps::balance_forces;
 use crate::method::basis::scattered;
 use crate::method::breakdown::Breakdown;
@@ -14,11 +15,8 @@ use crate::method::continuum::shape::Shape;
 use crate::method::continuum::state::{Nodes, Particles};
 use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
-use crate::method::reading::NodalMass;
+use crate::method::reading::{Kinematics, NodalMass};
 use nalgebra::SVector;
-
-/// OTM has so many steps.
-pub const STEPS: usize = 7;
 
 // ANCHOR: otm_start
 /// Fills the nodes at k = 0: m_a = Σ_p m_p N_ap and v_a = Σ_p m_p v_p N_ap / m_a.
@@ -185,3 +183,42 @@ pub fn renew_masses<const D: usize>(
     Ok(())
 }
 // ANCHOR_END: renew_masses
+
+const AT_START: Made = &["N_Ip", "grad_N_Ip", "lambda", "m_I", "v_I", "f_int_I", "f_ext_I", "f_I"];
+const RENEWED: Made = &["N_Ip", "grad_N_Ip", "lambda", "m_I", "v_I"];
+const KICKED: Made = &["v_I", "v_p"];
+const MADE_KEPT: &[Made] =
+    &[AT_START, &["v_I"], &["x_I"], &["x_p"], MATERIAL, TABLE, FORCES, KICKED];
+const MADE_RENEWED: &[Made] =
+    &[AT_START, &["v_I"], &["x_I"], &["x_p"], MATERIAL, RENEWED, FORCES, KICKED];
+
+/// This is OTM, with one of three readings of its nodes' masses.
+pub struct Otm(pub NodalMass);
+
+impl<const D: usize> Scheme<D> for Otm {
+    fn makes(&self, _: Kinematics) -> &'static [Made] {
+        match self.0 {
+            NodalMass::Kept => MADE_KEPT,
+            NodalMass::RenewedKeepingVelocity | NodalMass::RenewedKeepingMomentum => MADE_RENEWED,
+        }
+    }
+
+    fn start(&self, state: &mut State<D>, model: &Model<D>) -> Result<(), Breakdown> {
+        start(state, model)
+    }
+
+    fn step(
+        &self,
+        n: usize,
+        state: &mut State<D>,
+        model: &Model<D>,
+        dt: f64,
+        t: f64,
+    ) -> Result<(), Breakdown> {
+        step(n, state, model, self.0, dt, t)
+    }
+
+    fn factor(&self, _: Kinematics) -> Factor {
+        Factor::One
+    }
+}

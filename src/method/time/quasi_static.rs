@@ -5,14 +5,13 @@
 //! Point Learning Environment* (2020), from whose column the shipped scene is taken.
 
 use super::equilibrium::balance;
+use super::scheme::{Factor, MATERIAL, Made, NONE, Scheme, TABLE};
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
+use crate::method::reading::Kinematics;
 use nalgebra::SVector;
-
-/// A load step has so many steps.
-pub const STEPS: usize = 5;
 
 // ANCHOR: quasi_static
 /// Takes step `n`, 1 to 5, of the load step that ends at `t` (s), which says how much of the loads
@@ -47,3 +46,27 @@ pub fn step<const D: usize>(
     Ok(())
 }
 // ANCHOR_END: quasi_static
+
+/// This is the march from load to load.
+pub struct QuasiStatic;
+
+impl<const D: usize> Scheme<D> for QuasiStatic {
+    fn makes(&self, _: Kinematics) -> &'static [Made] {
+        &[NONE, TABLE, &["m_I"], NONE, &["x_p"], MATERIAL]
+    }
+
+    fn step(
+        &self,
+        n: usize,
+        state: &mut State<D>,
+        model: &Model<D>,
+        _: f64,
+        t: f64,
+    ) -> Result<(), Breakdown> {
+        step(n, state, model, t)
+    }
+
+    fn factor(&self, _: Kinematics) -> Factor {
+        Factor::Unlimited
+    }
+}

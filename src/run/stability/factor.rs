@@ -1,9 +1,8 @@
 //! The factor g is what a scheme makes of the trip to the particles and back.
 
 use crate::method::basis::Basis;
-use crate::method::choice::{Integrator, Method};
-use crate::method::reading::{Kinematics, StressUpdate};
 use crate::method::time::generalized_alpha::Parameters;
+use crate::method::time::scheme::Factor;
 
 /// The polynomial in place of a fraction may be off by this.
 const ERROR: f64 = 1e-6;
@@ -12,55 +11,25 @@ const ERROR: f64 = 1e-6;
 const MOST_TERMS: usize = 500;
 
 // ANCHOR: factor
-/// This is g, what a scheme makes of an eigenvalue s of A.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum OfScheme {
-    /// 1.
-    One,
-    /// s.
-    Filtered,
-    /// 2 − s.
-    Last,
-    /// 2p/l.
-    Alpha(Parameters),
-    /// 0: no time step is too large.
-    Unlimited,
-}
-
-impl OfScheme {
-    /// Gives g of a method whose strain is that of one of two maps.
-    pub fn of(method: Method, kinematics: Kinematics) -> Self {
-        let Method::Mpm(integrator) = method else {
-            return OfScheme::One;
-        };
-        match integrator {
-            Integrator::GeneralizedAlpha { rho_b } => OfScheme::Alpha(Parameters::new(rho_b)),
-            Integrator::ImplicitNewmark | Integrator::QuasiStatic => OfScheme::Unlimited,
-            // The velocity that moves the particles strains them, before it is filtered.
-            _ if kinematics == Kinematics::Consistent => OfScheme::Last,
-            Integrator::Newmark(_) | Integrator::CorrectedEuler => OfScheme::Filtered,
-            Integrator::ForwardEuler(StressUpdate::Last) => OfScheme::Last,
-            Integrator::ForwardEuler(_) => OfScheme::Filtered,
-        }
-    }
-
+impl Factor {
     /// Says whether a node with hardly any mass takes the limit to 0: where g(0) is not 0, and
     /// |∇N|²/N is not bounded.
     pub fn fears_light_nodes(&self, basis: &Basis) -> bool {
         match self {
-            OfScheme::One | OfScheme::Filtered | OfScheme::Unlimited => false,
-            OfScheme::Last | OfScheme::Alpha(_) => basis.traits().pushes_light_nodes,
+            Factor::One | Factor::Filtered | Factor::Unlimited => false,
+            Factor::Last | Factor::Alpha { .. } => basis.traits().pushes_light_nodes,
         }
     }
 
     /// Gives g(s), s from 0 to 1.
     pub fn at(&self, s: f64) -> f64 {
         match self {
-            OfScheme::One => 1.0,
-            OfScheme::Unlimited => 0.0,
-            OfScheme::Filtered => s,
-            OfScheme::Last => 2.0 - s,
-            OfScheme::Alpha(Parameters { alpha_m, beta, gamma }) => {
+            Factor::One => 1.0,
+            Factor::Unlimited => 0.0,
+            Factor::Filtered => s,
+            Factor::Last => 2.0 - s,
+            Factor::Alpha { rho_b } => {
+                let Parameters { alpha_m, beta, gamma } = Parameters::new(*rho_b);
                 let l = 1.0 - alpha_m - alpha_m * s;
                 let p = (1.0 + s) * (beta - 0.5 * gamma * s) - 0.5 * s * (1.0 - s);
                 2.0 * p / l

@@ -20,7 +20,6 @@ mod operator;
 mod predict;
 mod watch;
 
-pub use factor::OfScheme;
 pub use lanczos::Tridiagonal;
 pub use march::{grows, measured};
 pub use noise::noise;

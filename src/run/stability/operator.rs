@@ -1,10 +1,11 @@
 //! The operator whose largest eigenvalue is 4 over the square of the limit.
 
-use super::factor::OfScheme;
 use crate::method::choice::Mass;
 use crate::method::continuum::law::{Elastic, symmetric_part};
 use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
+use crate::method::time;
+use crate::method::time::scheme::Factor;
 use nalgebra::{SMatrix, SVector};
 
 /// This is the operator Ĝᵀ g(A) M⁻¹ Ĝ on the stresses of the particles, with
@@ -12,7 +13,7 @@ use nalgebra::{SMatrix, SVector};
 pub struct Operator<'a, const D: usize> {
     pub state: &'a mut State<D>,
     model: &'a Model<D>,
-    factor: OfScheme,
+    factor: Factor,
     chebyshev: Vec<f64>,
     /// Which particles see a node without mass: they stand on the last node to the last bit.
     /// Such a node moves with another and strains nothing, though the stress pulls at it;
@@ -41,7 +42,7 @@ fn scaled<const D: usize>(y: &SMatrix<f64, D, D>, shear: f64, bulk: f64) -> SMat
 impl<'a, const D: usize> Operator<'a, D> {
     /// Makes the operator of a tabulated state with masses.
     pub fn new(state: &'a mut State<D>, model: &'a Model<D>) -> Self {
-        let factor = OfScheme::of(model.method, model.kinematics);
+        let factor = time::scheme::<D>(model.method).factor(model.kinematics);
         let bare = |p: usize| {
             state.shape.has_tiny(p) && state.shape.find(p, |I| state.node.m[I] == 0.0).is_some()
         };
@@ -133,14 +134,14 @@ impl<'a, const D: usize> Operator<'a, D> {
     /// u is so large that u/2 + (2A − 1)u/2 would leave nothing of Au.
     fn scheme(&mut self, u: &Field<D>) -> Field<D> {
         match self.factor {
-            OfScheme::One => u.clone(),
-            OfScheme::Unlimited => vec![SVector::zeros(); u.len()],
-            OfScheme::Filtered => self.filter(u),
-            OfScheme::Last => {
+            Factor::One => u.clone(),
+            Factor::Unlimited => vec![SVector::zeros(); u.len()],
+            Factor::Filtered => self.filter(u),
+            Factor::Last => {
                 let filtered = self.filter(u);
                 (0..u.len()).map(|I| u[I] * 2.0 - filtered[I]).collect()
             }
-            OfScheme::Alpha(_) => self.polynomial(u),
+            Factor::Alpha { .. } => self.polynomial(u),
         }
     }
 
@@ -175,9 +176,9 @@ impl<'a, const D: usize> Operator<'a, D> {
     /// largest. (2 − A is taken for 2.)
     pub fn bound(&mut self) -> Option<f64> {
         let factor = match self.factor {
-            OfScheme::One | OfScheme::Filtered => 1.0,
-            OfScheme::Last => 2.0,
-            OfScheme::Alpha(_) | OfScheme::Unlimited => return None,
+            Factor::One | Factor::Filtered => 1.0,
+            Factor::Last => 2.0,
+            Factor::Alpha { .. } | Factor::Unlimited => return None,
         };
         if self.model.mass == Mass::Consistent || self.out.contains(&true) {
             return None;
@@ -201,7 +202,7 @@ impl<'a, const D: usize> Operator<'a, D> {
             }
         };
         divide(&mut phi);
-        if self.factor == OfScheme::Filtered {
+        if self.factor == Factor::Filtered {
             phi = self.mapped(&phi);
             divide(&mut phi);
         }

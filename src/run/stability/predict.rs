@@ -1,7 +1,6 @@
 //! The limit of Δt is predicted from where the particles stand, and from all places that they
 //! may come to.
 
-use super::factor::OfScheme;
 use super::lanczos::Tridiagonal;
 use super::noise::noise;
 use super::operator::Operator;
@@ -11,7 +10,8 @@ use crate::method::continuum::law::symmetric_part;
 use crate::method::continuum::state::Particles;
 use crate::method::grid::odometer;
 use crate::method::model::{Model, State};
-use crate::method::time::{otm, steps};
+use crate::method::time::scheme::Factor;
+use crate::method::time::{self, otm, steps};
 use crate::scene::fault::Fault;
 use crate::scene::{Motion, Scene};
 use crate::setup;
@@ -224,7 +224,7 @@ pub fn touches<const D: usize>(
     model: &Model<D>,
     offset: &Offset<D>,
 ) -> Result<Vec<Offset<D>>, Breakdown> {
-    let filtered = OfScheme::of(model.method, model.kinematics) == OfScheme::Filtered;
+    let filtered = time::scheme::<D>(model.method).factor(model.kinematics) == Factor::Filtered;
     let smooth =
         (filtered && model.mass == Mass::Lumped) || !model.basis.traits().switches_nodes_on;
     if smooth || model.method.moves_nodes() {
@@ -279,11 +279,8 @@ pub fn over_offsets(scene: &Scene) -> Result<f64, Breakdown> {
     let per_cell = &scene.grid.particles_per_cell;
     let steps = STEPS[dimension - 1];
     let most = per_cell.iter().max().map_or(1, |n| (steps * n).min(PLACES));
-    let beside = if OfScheme::of(scene.method, scene.kinematics).fears_light_nodes(&scene.basis) {
-        0.5
-    } else {
-        BESIDE
-    };
+    let factor = time::scheme::<1>(scene.method).factor(scene.kinematics);
+    let beside = if factor.fears_light_nodes(&scene.basis) { 0.5 } else { BESIDE };
     let mut least = f64::INFINITY;
     for direction in directions(dimension) {
         for n in 0..most {

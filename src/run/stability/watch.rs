@@ -1,6 +1,5 @@
 //! A run watches its limit of Δt as the particles move.
 
-use super::factor::OfScheme;
 use super::lanczos::{Tridiagonal, dot};
 use super::noise::noise;
 use super::operator::{Operator, Stress};
@@ -12,7 +11,7 @@ use crate::method::continuum::state::Particles;
 use crate::method::grid::odometer;
 use crate::method::measure;
 use crate::method::model::{Model, State};
-use crate::method::time::steps;
+use crate::method::time::{self, steps};
 use crate::scene::Scene;
 use nalgebra::{SMatrix, SVector};
 
@@ -94,7 +93,8 @@ impl<'a, const D: usize> Watch<'a, D> {
             model,
             own: None,
             seen: state.particle.x.clone(),
-            light_nodes_harm: OfScheme::of(model.method, model.kinematics)
+            light_nodes_harm: time::scheme::<D>(model.method)
+                .factor(model.kinematics)
                 .fears_light_nodes(&model.basis),
             gained: None,
             lowest: f64::INFINITY,
