@@ -539,6 +539,7 @@ fn choosing_front_is_named() {
         ("B-splines consistent", "bspline, consistent", 2, Square),
         ("LME lumped", "lme, lumped", 3, Triangle),
         ("LME consistent", "lme, consistent", 1, Diamond),
+        ("dual domain consistent", "ddmp, consistent", 9, Plus),
         ("OTM", "otm", 7, TriangleDown),
         ("finite elements", "finite elements", 6, Cross),
     ] {

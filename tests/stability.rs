@@ -7,7 +7,7 @@ use approx::assert_relative_eq;
 use kuva::prelude::MarkerShape::{self, *};
 use lme_mpm::method::choice::Method;
 use lme_mpm::method::model::State;
-use lme_mpm::method::time::scheme::Factor;
+use lme_mpm::method::time::scheme::TripFactor;
 use lme_mpm::method::time::{otm, steps};
 use lme_mpm::run::stability::{
     Operator, Tridiagonal, at_offset, critical, grows, limit, measured, noise, over_offsets,
@@ -310,7 +310,7 @@ fn stability_factor_of_generalized_alpha() {
     };
     let points = || (0..=2000).map(|n| 1.0 - (f64::from(n) / 2000.0).powi(4));
     let g = |rho_b: f64| {
-        let factor = Factor::Alpha { rho_b };
+        let factor = TripFactor::Alpha { rho_b };
         (factor, factor.chebyshev())
     };
     for rho in rho_b {

@@ -4,7 +4,7 @@
 use crate::support::*;
 use lme_mpm::method::breakdown::Breakdown;
 use lme_mpm::method::time::generalized_alpha::Parameters;
-use lme_mpm::method::time::scheme::Factor;
+use lme_mpm::method::time::scheme::TripFactor;
 use lme_mpm::run::Stopped;
 use lme_mpm::run::table::Table;
 use lme_mpm::scene::{DYKA, Scene};
@@ -185,14 +185,14 @@ fn watch_says_what_would_have_held() {
 /// times the limit; and with Δt at 0.999 of it nothing grows.
 #[test]
 fn watch_rate_is_an_upper_one() {
-    let rate = |factor: Factor, s: f64, part: f64| {
+    let rate = |factor: TripFactor, s: f64, part: f64| {
         // Δt = 1: q is the acceleration by the stress, w the nodal velocity, a that of k.
         let kappa = 4.0 * part * part / factor.at(s);
         let (mut x, mut growth) = ([0.3, 0.7, 0.2], 0.0);
         for k in 0..2000 {
             let [w, q, a] = x;
             x = match factor {
-                Factor::Alpha { rho_b } => {
+                TripFactor::Alpha { rho_b } => {
                     let Parameters { alpha_m, beta, gamma } = Parameters::new(rho_b);
                     let next = (q - alpha_m * a) / (1.0 - alpha_m);
                     let d = w + (0.5 - beta) * a + beta * next;
@@ -207,8 +207,8 @@ fn watch_rate_is_an_upper_one() {
         growth
     };
     let alphas = [0.0, 0.2, 0.5, 0.8, 0.95, 0.999];
-    let alphas = alphas.map(|rho_b| Factor::Alpha { rho_b });
-    for factor in [&[Factor::Last], &alphas[..]].concat() {
+    let alphas = alphas.map(|rho_b| TripFactor::Alpha { rho_b });
+    for factor in [&[TripFactor::Last], &alphas[..]].concat() {
         for s in (0..=20).map(|n| f64::from(n) / 20.0) {
             for part in [1.01, 1.1, 1.5, 2.0, 5.0, 50.0] {
                 let (found, upper) = (rate(factor, s, part), 2.0 * f64::acosh(part));

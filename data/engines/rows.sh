@@ -6,7 +6,7 @@
 #
 # ENGINE is parallel, for GNU parallel with a row on each core, or slurm, for one job array of
 # Slurm: then every node must see DIR, and SBATCH_PARTITION and so on choose where the jobs
-# run. STUDY is trade, choose, gamma, orders or stability. Wants lme-mpm on the PATH. When a
+# run. STUDY is trade, choose, methods, gamma, orders or stability. Wants lme-mpm on the PATH. When a
 # row fails, nothing is merged; with Slurm its message stands in DIR/rows.
 set -eu
 engine=$1 study=$2 dir=$3

@@ -91,7 +91,7 @@ const FULL: Sweep = Sweep {
 };
 
 /// A scheme computes the scene on a grid that is still to be chosen.
-struct Scheme {
+struct Traded {
     method: &'static str,
     /// Mass, basis and integrator.
     parts: String,
@@ -101,10 +101,10 @@ struct Scheme {
 
 /// Lists all schemes of MPM, each with a common time step and with one that is a fixed part of
 /// its own limit.
-fn mpm(sweep: &Sweep) -> Vec<Scheme> {
+fn mpm(sweep: &Sweep) -> Vec<Traded> {
     let mut all = Vec::new();
     let mut add = |parts: String, particles_per_cell, step| {
-        all.push(Scheme { method: "mpm", parts, particles_per_cell, step });
+        all.push(Traded { method: "mpm", parts, particles_per_cell, step });
     };
     for basis in sweep.bases {
         for &per_cell in sweep.particles_per_cell {
@@ -137,13 +137,13 @@ fn mpm(sweep: &Sweep) -> Vec<Scheme> {
 
 /// Lists all schemes of OTM, each with a common time step and with one just below its own
 /// limit.
-fn otm(sweep: &Sweep) -> Vec<Scheme> {
+fn otm(sweep: &Sweep) -> Vec<Traded> {
     let mut all = Vec::new();
     for basis in [LME_0_8, LME_1_8, LME_4, LME_6] {
         for particles_per_cell in if sweep.crossed { 1..=2 } else { 1..=1 } {
             for step in [Common(0.5), PartOfLimit(0.95)] {
                 let parts = format!("mass=lumped {basis} {NEWMARK}");
-                all.push(Scheme { method: "otm", parts, particles_per_cell, step });
+                all.push(Traded { method: "otm", parts, particles_per_cell, step });
             }
         }
     }
@@ -222,7 +222,7 @@ pub fn levels(template: &Template, full: bool) -> Result<Vec<Vec<Configuration>>
     if template.scene.dimension() == 1 {
         for cfl in [0.998, 0.5] {
             let parts = format!("mass=lumped {LINEAR} {NEWMARK}");
-            schemes.push(Scheme { method: "otm", parts, particles_per_cell: 1, step: Common(cfl) });
+            schemes.push(Traded { method: "otm", parts, particles_per_cell: 1, step: Common(cfl) });
         }
     }
     schemes.extend(mpm(&sweep));
@@ -259,10 +259,10 @@ pub fn least_pairs(template: &Template, configuration: &Configuration) -> Option
 /// not, and the common step tells what is wrong.
 fn configuration(
     template: &Template,
-    scheme: &Scheme,
+    scheme: &Traded,
     refinement: f64,
 ) -> Result<Option<Configuration>, Fault> {
-    let Scheme { method, parts, particles_per_cell, step } = scheme;
+    let Traded { method, parts, particles_per_cell, step } = scheme;
     let grid = template.grid(method, refinement, *particles_per_cell);
     let with = |cfl: f64| format!("method={method} {parts} {grid} time.cfl={cfl}").parse();
     let part = match *step {

@@ -6,7 +6,7 @@
 //! takes the strain from the momentum of the particles, mapped anew.
 
 use super::scheme::{
-    ADVANCED, FORCES, Factor, MAPPED, MATERIAL, MOVED, Made, NONE, STRAINED, Scheme, TABLE,
+    ADVANCED, FORCES, MAPPED, MATERIAL, MOVED, Made, NONE, STRAINED, Scheme, TABLE, TripFactor,
 };
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
@@ -124,10 +124,10 @@ impl<const D: usize> Scheme<D> for ForwardEuler {
         forward_step(n, state, model, self.0, dt, t)
     }
 
-    fn factor(&self, kinematics: Kinematics) -> Factor {
+    fn factor(&self, kinematics: Kinematics) -> TripFactor {
         match self.0 {
-            StressUpdate::Last => Factor::Last,
-            StressUpdate::First | StressUpdate::ModifiedLast => Factor::of_strain(kinematics),
+            StressUpdate::Last => TripFactor::Last,
+            StressUpdate::First | StressUpdate::ModifiedLast => TripFactor::of_strain(kinematics),
         }
     }
 }
@@ -154,7 +154,7 @@ impl<const D: usize> Scheme<D> for CorrectedEuler {
         corrected_step(n, state, model, dt, t)
     }
 
-    fn factor(&self, kinematics: Kinematics) -> Factor {
-        Factor::of_strain(kinematics)
+    fn factor(&self, kinematics: Kinematics) -> TripFactor {
+        TripFactor::of_strain(kinematics)
     }
 }

@@ -1,7 +1,7 @@
 //! This is the explicit generalized-α scheme of Hulbert and Chung (1996) for particles,
 //! (24)-(26), with the balance and the parameters that the paper leaves out.
 
-use super::scheme::{FORCES, Factor, MAPPED, MOVED_WITH_A, Made, STRAINED, Scheme, TABLE};
+use super::scheme::{FORCES, MAPPED, MOVED_WITH_A, Made, STRAINED, Scheme, TABLE, TripFactor};
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
@@ -161,7 +161,7 @@ impl<const D: usize> Scheme<D> for GeneralizedAlpha {
         step(n, state, model, self.rho_b, dt, t)
     }
 
-    fn factor(&self, _: Kinematics) -> Factor {
-        Factor::Alpha { rho_b: self.rho_b }
+    fn factor(&self, _: Kinematics) -> TripFactor {
+        TripFactor::Alpha { rho_b: self.rho_b }
     }
 }

@@ -5,7 +5,7 @@
 
 use super::equilibrium::balance;
 use super::generalized_alpha;
-use super::scheme::{Factor, MAPPED, MATERIAL, MOVED_WITH_A, Made, NONE, Scheme, TABLE};
+use super::scheme::{MAPPED, MATERIAL, MOVED_WITH_A, Made, NONE, Scheme, TABLE, TripFactor};
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::shape::Shape;
@@ -99,7 +99,7 @@ impl<const D: usize> Scheme<D> for ImplicitNewmark {
         step(n, state, model, dt, t)
     }
 
-    fn factor(&self, _: Kinematics) -> Factor {
-        Factor::Unlimited
+    fn factor(&self, _: Kinematics) -> TripFactor {
+        TripFactor::Unlimited
     }
 }

@@ -2,7 +2,7 @@
 //! central difference (27)-(29).
 
 use super::deformation::gradient_of_predictor;
-use super::scheme::{ADVANCED, FORCES, Factor, MAPPED, Made, NONE, Scheme, TABLE};
+use super::scheme::{ADVANCED, FORCES, MAPPED, Made, NONE, Scheme, TABLE, TripFactor};
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::model::{Model, State};
@@ -86,7 +86,7 @@ impl<const D: usize> Scheme<D> for Newmark {
         step(n, state, model, self.0, dt, t)
     }
 
-    fn factor(&self, kinematics: Kinematics) -> Factor {
-        Factor::of_strain(kinematics)
+    fn factor(&self, kinematics: Kinematics) -> TripFactor {
+        TripFactor::of_strain(kinematics)
     }
 }

@@ -6,7 +6,7 @@
 //! every step. Time goes by central differences, as in [`crate::method::time::newmark`].
 
 use super::deformation::deform;
-use super::scheme::{FORCES, Factor, MATERIAL, Made, Scheme, TABLE};
+use super::scheme::{FORCES, MATERIAL, Made, Scheme, TABLE, TripFactor};
 use super::steps::balance_forces;
 use crate::method::basis::scattered;
 use crate::method::breakdown::Breakdown;
@@ -218,7 +218,7 @@ impl<const D: usize> Scheme<D> for Otm {
         step(n, state, model, self.0, dt, t)
     }
 
-    fn factor(&self, _: Kinematics) -> Factor {
-        Factor::One
+    fn factor(&self, _: Kinematics) -> TripFactor {
+        TripFactor::One
     }
 }

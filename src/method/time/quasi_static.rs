@@ -5,7 +5,7 @@
 //! Point Learning Environment* (2020), from whose column the shipped scene is taken.
 
 use super::equilibrium::balance;
-use super::scheme::{Factor, MATERIAL, Made, NONE, Scheme, TABLE};
+use super::scheme::{MATERIAL, Made, NONE, Scheme, TABLE, TripFactor};
 use super::steps::*;
 use crate::method::breakdown::Breakdown;
 use crate::method::continuum::sums;
@@ -66,7 +66,7 @@ impl<const D: usize> Scheme<D> for QuasiStatic {
         step(n, state, model, t)
     }
 
-    fn factor(&self, _: Kinematics) -> Factor {
-        Factor::Unlimited
+    fn factor(&self, _: Kinematics) -> TripFactor {
+        TripFactor::Unlimited
     }
 }

@@ -21,7 +21,7 @@ pub const STRAINED: Made = &["v_I", "G_p", "d_eps_p", "F_p", "rho_p", "sigma_p"]
 /// This is g, what a scheme makes of an eigenvalue s of A, the trip to the particles and back. Its
 /// values stand with the prediction of Δt.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Factor {
+pub enum TripFactor {
     /// 1.
     One,
     /// s.
@@ -34,13 +34,13 @@ pub enum Factor {
     Unlimited,
 }
 
-impl Factor {
+impl TripFactor {
     /// Gives that of explicit schemes: where the velocity that moves the particles strains them, it
     /// does so before it is filtered.
     pub fn of_strain(kinematics: Kinematics) -> Self {
         match kinematics {
-            Kinematics::AsPrinted => Factor::Filtered,
-            Kinematics::Consistent => Factor::Last,
+            Kinematics::AsPrinted => TripFactor::Filtered,
+            Kinematics::Consistent => TripFactor::Last,
         }
     }
 }
@@ -78,6 +78,6 @@ pub trait Scheme<const D: usize> {
 
     /// Says what the scheme makes of the trip to the particles and back, where their strain is
     /// that of one of two maps.
-    fn factor(&self, kinematics: Kinematics) -> Factor;
+    fn factor(&self, kinematics: Kinematics) -> TripFactor;
 }
 // ANCHOR_END: scheme

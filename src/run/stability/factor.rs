@@ -2,7 +2,7 @@
 
 use crate::method::basis::Basis;
 use crate::method::time::generalized_alpha::Parameters;
-use crate::method::time::scheme::Factor;
+use crate::method::time::scheme::TripFactor;
 
 /// The polynomial in place of a fraction may be off by this.
 const ERROR: f64 = 1e-6;
@@ -11,24 +11,24 @@ const ERROR: f64 = 1e-6;
 const MOST_TERMS: usize = 500;
 
 // ANCHOR: factor
-impl Factor {
+impl TripFactor {
     /// Says whether a node with hardly any mass takes the limit to 0: where g(0) is not 0, and
     /// |∇N|²/N is not bounded.
     pub fn fears_light_nodes(&self, basis: &Basis) -> bool {
         match self {
-            Factor::One | Factor::Filtered | Factor::Unlimited => false,
-            Factor::Last | Factor::Alpha { .. } => basis.traits().pushes_light_nodes,
+            TripFactor::One | TripFactor::Filtered | TripFactor::Unlimited => false,
+            TripFactor::Last | TripFactor::Alpha { .. } => basis.traits().pushes_light_nodes,
         }
     }
 
     /// Gives g(s), s from 0 to 1.
     pub fn at(&self, s: f64) -> f64 {
         match self {
-            Factor::One => 1.0,
-            Factor::Unlimited => 0.0,
-            Factor::Filtered => s,
-            Factor::Last => 2.0 - s,
-            Factor::Alpha { rho_b } => {
+            TripFactor::One => 1.0,
+            TripFactor::Unlimited => 0.0,
+            TripFactor::Filtered => s,
+            TripFactor::Last => 2.0 - s,
+            TripFactor::Alpha { rho_b } => {
                 let Parameters { alpha_m, beta, gamma } = Parameters::new(*rho_b);
                 let l = 1.0 - alpha_m - alpha_m * s;
                 let p = (1.0 + s) * (beta - 0.5 * gamma * s) - 0.5 * s * (1.0 - s);

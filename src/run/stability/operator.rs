@@ -5,7 +5,7 @@ use crate::method::continuum::law::{Elastic, symmetric_part};
 use crate::method::continuum::sums;
 use crate::method::model::{Model, State};
 use crate::method::time;
-use crate::method::time::scheme::Factor;
+use crate::method::time::scheme::TripFactor;
 use nalgebra::{SMatrix, SVector};
 
 /// This is the operator Ĝᵀ g(A) M⁻¹ Ĝ on the stresses of the particles, with
@@ -13,7 +13,7 @@ use nalgebra::{SMatrix, SVector};
 pub struct Operator<'a, const D: usize> {
     pub state: &'a mut State<D>,
     model: &'a Model<D>,
-    factor: Factor,
+    factor: TripFactor,
     chebyshev: Vec<f64>,
     /// Which particles see a node without mass: they stand on the last node to the last bit.
     /// Such a node moves with another and strains nothing, though the stress pulls at it;
@@ -134,14 +134,14 @@ impl<'a, const D: usize> Operator<'a, D> {
     /// u is so large that u/2 + (2A − 1)u/2 would leave nothing of Au.
     fn scheme(&mut self, u: &Field<D>) -> Field<D> {
         match self.factor {
-            Factor::One => u.clone(),
-            Factor::Unlimited => vec![SVector::zeros(); u.len()],
-            Factor::Filtered => self.filter(u),
-            Factor::Last => {
+            TripFactor::One => u.clone(),
+            TripFactor::Unlimited => vec![SVector::zeros(); u.len()],
+            TripFactor::Filtered => self.filter(u),
+            TripFactor::Last => {
                 let filtered = self.filter(u);
                 (0..u.len()).map(|I| u[I] * 2.0 - filtered[I]).collect()
             }
-            Factor::Alpha { .. } => self.polynomial(u),
+            TripFactor::Alpha { .. } => self.polynomial(u),
         }
     }
 
@@ -176,9 +176,9 @@ impl<'a, const D: usize> Operator<'a, D> {
     /// largest. (2 − A is taken for 2.)
     pub fn bound(&mut self) -> Option<f64> {
         let factor = match self.factor {
-            Factor::One | Factor::Filtered => 1.0,
-            Factor::Last => 2.0,
-            Factor::Alpha { .. } | Factor::Unlimited => return None,
+            TripFactor::One | TripFactor::Filtered => 1.0,
+            TripFactor::Last => 2.0,
+            TripFactor::Alpha { .. } | TripFactor::Unlimited => return None,
         };
         if self.model.mass == Mass::Consistent || self.out.contains(&true) {
             return None;
@@ -202,7 +202,7 @@ impl<'a, const D: usize> Operator<'a, D> {
             }
         };
         divide(&mut phi);
-        if self.factor == Factor::Filtered {
+        if self.factor == TripFactor::Filtered {
             phi = self.mapped(&phi);
             divide(&mut phi);
         }

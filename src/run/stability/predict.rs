@@ -10,7 +10,7 @@ use crate::method::continuum::law::symmetric_part;
 use crate::method::continuum::state::Particles;
 use crate::method::grid::odometer;
 use crate::method::model::{Model, State};
-use crate::method::time::scheme::Factor;
+use crate::method::time::scheme::TripFactor;
 use crate::method::time::{self, otm, steps};
 use crate::scene::fault::Fault;
 use crate::scene::{Motion, Scene};
@@ -224,7 +224,7 @@ pub fn touches<const D: usize>(
     model: &Model<D>,
     offset: &Offset<D>,
 ) -> Result<Vec<Offset<D>>, Breakdown> {
-    let filtered = time::scheme::<D>(model.method).factor(model.kinematics) == Factor::Filtered;
+    let filtered = time::scheme::<D>(model.method).factor(model.kinematics) == TripFactor::Filtered;
     let smooth =
         (filtered && model.mass == Mass::Lumped) || !model.basis.traits().switches_nodes_on;
     if smooth || model.method.moves_nodes() {
