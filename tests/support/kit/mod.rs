@@ -135,16 +135,20 @@ fn trace_of(
 /// Level 0: what is evaluated at a point.
 fn kernels() -> Vec<Piece> {
     let mut kit = Vec::new();
-    for (name, says, basis) in [
-        ("basis_linear.csv", "linear shape functions", LINEAR),
-        ("basis_ugimp.csv", "uGIMP", UGIMP),
-        ("basis_bspline.csv", "quadratic B-splines", BSPLINE),
-        ("basis_lme_wide.csv", "local max-ent, γ = 0.8", LME_WIDE),
-        ("basis_lme_middle.csv", "local max-ent, γ = 1.8", LME_MIDDLE),
-        ("basis_lme_narrow.csv", "local max-ent, γ = 4", LME_NARROW),
-    ] {
-        let scene = [basis.sets, &QUARTERS].concat();
-        kit.push(piece(0, name, says, &scene, (KERNEL, texts::basis(basis.sets))));
+    let dual = "dual domain: cells count that hold a point of this list";
+    let list: [(_, _, &[&str]); 8] = [
+        ("basis_linear.csv", "linear shape functions", LINEAR.sets),
+        ("basis_ugimp.csv", "uGIMP", UGIMP.sets),
+        ("basis_bspline.csv", "quadratic B-splines", BSPLINE.sets),
+        ("basis_cubic.csv", "cubic B-splines", &CUBIC),
+        ("basis_ddmp.csv", dual, &["basis.kind=ddmp"]),
+        ("basis_lme_wide.csv", "local max-ent, γ = 0.8", LME_WIDE.sets),
+        ("basis_lme_middle.csv", "local max-ent, γ = 1.8", LME_MIDDLE.sets),
+        ("basis_lme_narrow.csv", "local max-ent, γ = 4", LME_NARROW.sets),
+    ];
+    for (name, says, sets) in list {
+        let scene = [sets, &QUARTERS].concat();
+        kit.push(piece(0, name, says, &scene, (KERNEL, texts::basis(sets))));
     }
     let line = "elastic law in uniaxial strain from σ = 0, density from ρ = 1";
     for (name, says, text) in [
@@ -161,7 +165,9 @@ fn kernels() -> Vec<Piece> {
 /// Level 0 in 2D and 3D: points inside, on nodes and faces, on sides and corners of the grid.
 fn kernels_in_more_dimensions() -> Vec<Piece> {
     let mut kit = Vec::new();
-    let in_2d: [(_, _, &[&str]); 7] = [
+    let in_2d: [(_, _, &[&str]); 9] = [
+        ("basis_2d_cubic.csv", "cubic B-splines", &CUBIC),
+        ("basis_2d_ddmp.csv", "dual domain, as in 1D", &["basis.kind=ddmp"]),
         ("basis_2d_linear.csv", "linear shape functions", &[]),
         ("basis_2d_ugimp.csv", "uGIMP", &["basis.kind=ugimp"]),
         ("basis_2d_bspline.csv", "quadratic B-splines", &["basis.kind=bspline"]),
@@ -226,6 +232,7 @@ fn traces() -> Vec<Piece> {
     kit
 }
 
+const CUBIC: [&str; 2] = ["basis.kind=bspline", "basis.degree=3"];
 const WIDE: [&str; 2] = ["basis.kind=lme", "basis.gamma=0.8"];
 const WIDE_BALL: [&str; 3] = ["basis.kind=lme", "basis.gamma=0.8", "basis.support=ball"];
 const NARROW: [&str; 2] = ["basis.kind=lme", "basis.gamma=12"];
@@ -240,7 +247,17 @@ fn traces_of_methods() -> Vec<Piece> {
     let renewed = [&otm[..], &["nodal_mass=renewed-keeping-momentum"]].concat();
     let wide_consistent = [LME_WIDE.sets, &["mass=consistent"]].concat();
     let hencky = ["body.law=hencky", "time.kinematics=consistent"];
-    let list: [(_, _, &[&str]); 10] = [
+    let updated = [&otm[..], &["basis.metric=updated"]].concat();
+    let fitted = ["basis.kind=bspline", "forces.reconstruction=mls"];
+    let list: [(_, _, &[&str]); 18] = [
+        ("cubic_3.csv", "cubic B-splines", &CUBIC),
+        ("gimp_3.csv", "GIMP, whose domains stretch", &["basis.kind=gimp"]),
+        ("ddmp_3.csv", "dual domain", &["basis.kind=ddmp"]),
+        ("null_space_3.csv", "the mean of each cell's stresses", &["filter=null-space"]),
+        ("tls_3.csv", "a stress fitted in each cell", &["forces.reconstruction=tls"]),
+        ("mls_3.csv", "quadratic B-splines, a stress fitted about each Gauss point", &fitted),
+        ("implicit_3.csv", "implicit Newmark", &["time.integrator=implicit-newmark"]),
+        ("otm_updated_3.csv", "OTM, γ = 4, with the updated metric", &updated),
         ("ugimp_3.csv", "uGIMP", UGIMP.sets),
         ("bspline_3.csv", "quadratic B-splines", BSPLINE.sets),
         ("generalized_alpha_3.csv", "generalized-α with ρ_b = 0.8", GENERALIZED_ALPHA.sets),
@@ -265,7 +282,10 @@ fn traces_in_more_dimensions() -> Vec<Piece> {
     let (near_box, near_ball) = (near(&NARROW), near(&NARROW_BALL));
     let otm = ["method=otm", "basis.kind=lme", "basis.gamma=4"];
     let finite = ["body.law=neo-hookean", "time.kinematics=consistent"];
-    let list: [(Base, u8, _, _, &[&str], usize); 17] = [
+    let list: [(Base, u8, _, _, &[&str], usize); 20] = [
+        (STRIP, 2, "strip_gimp_2.csv", "GIMP, whose domains stretch", &["basis.kind=gimp"], 2),
+        (STRIP, 2, "strip_ddmp_2.csv", "dual domain", &["basis.kind=ddmp"], 2),
+        (STRIP, 2, "strip_cubic_2.csv", "cubic B-splines", &CUBIC, 2),
         (STRIP, 1, "strip_linear_1.csv", "linear basis", &[], 1),
         (STRIP, 1, "strip_lme_1.csv", "local max-ent, γ = 0.8, in a box", &WIDE, 1),
         (BLOCK, 1, "block_linear_1.csv", "linear basis in 3D", &[], 1),
