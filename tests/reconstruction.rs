@@ -1,7 +1,9 @@
 //! Reconstructed stress: what the two rules pass on, what they keep, and what they are worth.
 
 use crate::published::VIBRATING;
+use crate::support::lines::{Dash, Frame, Line, lines};
 use crate::support::*;
+use kuva::prelude::MarkerShape;
 use lme_mpm::method::basis::{Basis, Degree};
 use lme_mpm::method::continuum::state::{Nodes, Particles};
 use lme_mpm::method::continuum::sums;
@@ -12,6 +14,7 @@ use lme_mpm::method::reconstruction::{
     Cell, Piecewise, Reconstruction, Rule, internal_force, mls, points, tls,
 };
 use lme_mpm::run::{parse, stability};
+use lme_mpm::scene::Scene;
 use lme_mpm::scene::{DYKA, wave_speed};
 use nalgebra::{SMatrix, SVector};
 use std::fmt::Write;
@@ -403,7 +406,7 @@ fn reconstruction_of_a_strip_is_that_of_the_bar() {
 }
 
 /// The largest stable step, which is not predicted, is marched: on the bar with 10 cells and
-/// particles a fifth of their distance off, beside that of the sum over particles.
+/// particles a fifth of their distance off. It is that of the sum over particles to an eighth.
 #[test]
 fn reconstruction_has_a_measured_limit() {
     let mut table =
@@ -419,8 +422,90 @@ fn reconstruction_has_a_measured_limit() {
             let courant = wave_speed(&fitted.body) * 10.0 / 0.1333;
             let [marched, limit] = [marched, limit].map(|dt| dt * courant);
             writeln!(table, "{name},{},{marched:.2},{limit:.2}", mass.name).unwrap();
-            assert!(marched > 0.2, "{name}: {marched}");
+            let times = marched / limit;
+            assert!((0.95..1.13).contains(&times), "{name}: {marched} {limit}");
         }
     }
     approve("reconstruction__limits", &table);
+}
+
+/// Why linear functions with MLS are refused: with particles a tenth or a third of their distance off
+/// the energy of a disturbance grows a millionfold at half of the sum's limit of the time step, at a tenth
+/// and at a fiftieth, on 10 and 20 cells, with two and three particles per cell and both degrees. With
+/// TLS, and with B-splines, it does not at half of it.
+#[test]
+fn reconstruction_by_mls_of_linear_functions_has_no_stable_step() {
+    let grows = |scene: &Scene, offset: f64, limit: f64, part: f64| {
+        stability::grows(scene, offset, part * limit, (1000.0 / part) as usize).unwrap()
+    };
+    for (cells, per_cell, degree, offset) in
+        [(10, 2, 1, 0.1), (10, 2, 2, 0.35), (10, 3, 1, 0.35), (20, 2, 2, 0.1)]
+    {
+        let grid = [format!("grid.cells={cells}"), format!("grid.particles_per_cell={per_cell}")];
+        let grid = [grid[0].as_str(), &grid[1]];
+        let mut scene = dyka(&grid);
+        let limit = stability::predicted(&scene, offset).unwrap();
+        let stable = [dyka(&[&TLS[..], &grid].concat()), dyka(&[&MLS[..], &grid].concat())];
+        assert!(stable.iter().all(|scene| !grows(scene, offset, limit, 0.5)));
+        let functions = Piecewise::Linear;
+        scene.reconstruction = Some(Reconstruction { rule: Rule::Mls, degree, functions });
+        for part in [0.5, 0.1, 0.02] {
+            assert!(grows(&scene, offset, limit, part), "{cells} {per_cell} {degree}: {part}");
+        }
+    }
+}
+
+/// Draws what both rules make of stresses with noise: three particles in each of six cells at random
+/// places, whose stresses are those of a wave and up to a fifth of it off. TLS gives straight lines, which jump from cell
+/// to cell by up to a third of the wave and more; MLS does not jump, to round-off, and is nearer to the wave than the particles
+/// are, by three tenths.
+#[test]
+fn figure_of_fits() {
+    let (grid, mut particle) = scattered::<1>(3);
+    let mut random = stability::noise();
+    let wave = |x: f64| libm::sin(4.0 * x);
+    let noisy = |x: &SVector<f64, 1>| SMatrix::repeat(wave(x[0]) + 0.2 * random());
+    particle.sigma = particle.x.iter().map(noisy).collect();
+    let mut inside: Vec<Vec<(usize, Located<1>)>> = vec![Vec::new(); grid.nodes()];
+    for (p, x) in particle.x.iter().enumerate() {
+        let at = grid.locate(x).unwrap();
+        inside[grid.node(at.cell)].push((p, at));
+    }
+    let points: Vec<(SVector<f64, 1>, f64)> =
+        (0..=20).map(|n| (SVector::from([n as f64 / 10.0 - 1.0]), 0.0)).collect();
+    let (mut pieces, mut smooth) = (Vec::new(), Vec::new());
+    for index in odometer(grid.cells) {
+        let particle = &particle;
+        let cell = Cell { index, points: &points, grid: &grid, particle, inside: &inside };
+        let places: Vec<f64> = places(&cell).iter().map(|x| x[0]).collect();
+        let fitted = [tls::stress(&cell, 1, &mut 0), mls::stress(&cell, 2, &mut 0)];
+        let [piece, part] = fitted.map(|sigma| {
+            places.iter().zip(sigma).map(|(x, sigma)| (*x, sigma[0])).collect::<Vec<_>>()
+        });
+        pieces.push(piece);
+        smooth.extend(part);
+    }
+    let off = |line: &[(f64, f64)]| {
+        let sum: f64 = line.iter().map(|(x, sigma)| (sigma - wave(*x)).powi(2)).sum();
+        (sum / line.len() as f64).sqrt()
+    };
+    let own: Vec<(f64, f64)> =
+        particle.x.iter().zip(&particle.sigma).map(|(x, sigma)| (x[0], sigma[0])).collect();
+    assert!(off(&smooth) < 0.7 * off(&own) && off(&pieces.concat()) > off(&own));
+    let jump = |line: &[(f64, f64)]| {
+        largest(line.chunks(21).zip(line.chunks(21).skip(1)).map(|(a, b)| a[20].1 - b[0].1))
+    };
+    assert!(jump(&smooth) < 1e-12 && jump(&pieces.concat()) > 0.3);
+    let right = (0..=150).map(|n| 0.01 * n as f64).map(|x| (x, wave(x))).collect();
+    let mut drawn = vec![
+        Line::new("the wave", right, 6).dashed(Dash::Dashed),
+        Line::new("particles", own, 0).dashed(Dash::Nothing).marked(MarkerShape::Circle),
+        Line::new("moving least squares, degree 2", smooth, 1),
+    ];
+    for (n, piece) in pieces.into_iter().enumerate() {
+        let name = if n == 0 { "Taylor least squares, degree 1" } else { "" };
+        drawn.push(Line::new(name, piece, 2));
+    }
+    let frame = Frame { x: "x [m], cells of 0.25 m", y: "stress", ..Frame::default() };
+    approve_picture("reconstruction__fits", lines(&drawn, &frame));
 }

@@ -384,7 +384,7 @@ fn bad_shape_input() {
         (shape(&["bspline", "--cutoff", "0"], "line.csv", "x\n0\n"), &["--cutoff", "lme only"]),
         (
             shape(&["lme", "--gamma", "1", "--half-length", "0.02"], "line.csv", "x\n0\n"),
-            &["--half-length", "ugimp only"],
+            &["--half-length", "ugimp and gimp only"],
         ),
         (shape(&["lme", "--gamma", "-1"], "line.csv", "x\n0\n"), &["above 0"]),
         (shape(&["lme", "--gamma", "1e-310"], "line.csv", "x\n0\n"), &["at least 1e-307"]),

@@ -3,7 +3,7 @@
 use crate::support::*;
 use lme_mpm::method::basis::{Basis, Degree, Support};
 use lme_mpm::method::grid::Grid;
-use lme_mpm::port::points::{COORDINATES, Points, shape_at};
+use lme_mpm::port::points::{COORDINATES, Points, ShapeQuery, shape_at};
 use lme_mpm::run::table::shortest;
 use nalgebra::SVector;
 
@@ -22,7 +22,17 @@ fn printed<const D: usize>(
     nodes: &[SVector<f64, D>],
     x: &[SVector<f64, D>],
 ) -> Vec<Vec<[f64; 4]>> {
-    let text = String::from_utf8(shape_at(basis, false, h, &csv(nodes), &csv(x)).unwrap()).unwrap();
+    let asked = ShapeQuery { basis: *basis, needs_grid: false, spacing: h, stretch: None };
+    answered(&asked, nodes, x)
+}
+
+/// The same of all that can be asked.
+fn answered<const D: usize>(
+    asked: &ShapeQuery,
+    nodes: &[SVector<f64, D>],
+    x: &[SVector<f64, D>],
+) -> Vec<Vec<[f64; 4]>> {
+    let text = String::from_utf8(shape_at(asked, &csv(nodes), &csv(x)).unwrap()).unwrap();
     let mut table = vec![vec![[0.0; 4]; nodes.len()]; x.len()];
     for line in text.lines().skip(1) {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
@@ -126,4 +136,29 @@ fn shape_is_what_otm_uses() {
             assert_eq!(printed[p][I][..3], [N, grad[0], grad[1]], "γ = {gamma}");
         }
     }
+}
+
+/// GIMP's functions of a particle that has stretched are those of a particle that is so long from the start,
+/// to the last bit, as long as uGIMP takes one; beyond that ΣN = 1 and Σ N x = x hold to 1e-15, up to a
+/// domain of two cells, and a longer one is refused by name.
+#[test]
+fn shape_of_stretched_particles() {
+    let h = 0.25;
+    let nodes: Vec<SVector<f64, 1>> = (0..9).map(|n| SVector::from([n as f64 * h])).collect();
+    let x: Vec<SVector<f64, 1>> = (0..20).map(|n| SVector::from([0.5 + 0.05 * n as f64])).collect();
+    let basis = Basis::Gimp { half_length: [0.25; 3] };
+    let asked =
+        |stretch: f64| ShapeQuery { basis, needs_grid: false, spacing: h, stretch: Some(stretch) };
+    for stretch in [0.5, 1.0, 1.5, 2.0] {
+        let longer = Basis::Ugimp { half_length: [0.25 * stretch; 3] };
+        assert_eq!(answered(&asked(stretch), &nodes, &x), printed(&longer, h, &nodes, &x));
+    }
+    for (row, x) in answered(&asked(3.9), &nodes, &x).iter().zip(&x) {
+        let sum = |of: &dyn Fn(usize) -> f64| (0..9).map(|I| row[I][0] * of(I)).sum::<f64>();
+        assert!((sum(&|_| 1.0) - 1.0).abs() < 1e-15);
+        assert!((sum(&|I| nodes[I][0]) - x[0]).abs() < 1e-15);
+        assert!((3..=4).contains(&row.iter().filter(|entry| entry[0] > 0.0).count()));
+    }
+    let fault = shape_at(&asked(4.1), &csv(&nodes), &csv(&x)).unwrap_err().to_string();
+    assert!(fault.contains("--stretch"), "{fault}");
 }

@@ -351,9 +351,12 @@ pub struct ShapeArguments {
     /// The degree of bspline, as basis.degree of a scene; 2 without it
     #[arg(long, value_parser = degree())]
     pub degree: Option<Degree>,
-    /// Half the length of a particle of ugimp (m), at most H/2
-    #[arg(long, value_name = "LP", required_if_eq("basis", "ugimp"), value_parser = positive, allow_negative_numbers = true)]
+    /// Half the length of a particle of ugimp and gimp at the start (m), at most H/2
+    #[arg(long, value_name = "LP", required_if_eq_any([("basis", "ugimp"), ("basis", "gimp")]), value_parser = positive, allow_negative_numbers = true)]
     pub half_length: Option<f64>,
+    /// How far the particles of gimp have stretched along each axis; 1 without it
+    #[arg(long, value_name = "F", value_parser = positive, allow_negative_numbers = true)]
+    pub stretch: Option<f64>,
     /// The nodes
     #[arg(long, value_name = "FILE")]
     pub nodes: PathBuf,
@@ -366,6 +369,7 @@ pub struct ShapeArguments {
 pub enum BasisName {
     Linear,
     Ugimp,
+    Gimp,
     Lme,
     Bspline,
     Ddmp,

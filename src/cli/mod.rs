@@ -111,24 +111,9 @@ fn exact(scene: &Path, points: &Path) -> Result<(), Fault> {
     print_bytes(&answer)
 }
 
-fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
-    let spacing = arguments.spacing;
-    let is = |name: BasisName| arguments.basis == name;
-    let (lme, ugimp) = (is(BasisName::Lme), is(BasisName::Ugimp));
-    let bspline = is(BasisName::Bspline);
-    for (argument, foreign, allowed) in [
-        ("--gamma", arguments.gamma.is_some() && !lme, "with --basis lme only"),
-        ("--cutoff", arguments.cutoff.is_some() && !lme, "with --basis lme only"),
-        ("--support", arguments.support.is_some() && !lme, "with --basis lme only"),
-        ("--half-length", arguments.half_length.is_some() && !ugimp, "with --basis ugimp only"),
-        ("--degree", arguments.degree.is_some() && !bspline, "with --basis bspline only"),
-    ] {
-        if foreign {
-            let problem = "it means nothing to this basis".to_string();
-            return Err(Fault::Argument { argument, problem, allowed });
-        }
-    }
-    let half = arguments.half_length.map_or(0.5, |half| half / spacing);
+/// Gives l of uGIMP and GIMP in spacings.
+fn half_length(arguments: &ShapeArguments) -> Result<f64, Fault> {
+    let half = arguments.half_length.map_or(0.5, |half| half / arguments.spacing);
     if half > 0.5 {
         return Err(Fault::Argument {
             argument: "--half-length",
@@ -136,9 +121,36 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
             allowed: "at most half of the spacing",
         });
     }
+    Ok(half)
+}
+
+fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
+    let spacing = arguments.spacing;
+    let is = |name: BasisName| arguments.basis == name;
+    let (lme, gimp, bspline) = (is(BasisName::Lme), is(BasisName::Gimp), is(BasisName::Bspline));
+    let sized = gimp || is(BasisName::Ugimp);
+    for (argument, foreign, allowed) in [
+        ("--gamma", arguments.gamma.is_some() && !lme, "with --basis lme only"),
+        ("--cutoff", arguments.cutoff.is_some() && !lme, "with --basis lme only"),
+        ("--support", arguments.support.is_some() && !lme, "with --basis lme only"),
+        (
+            "--half-length",
+            arguments.half_length.is_some() && !sized,
+            "with --basis ugimp and gimp only",
+        ),
+        ("--stretch", arguments.stretch.is_some() && !gimp, "with --basis gimp only"),
+        ("--degree", arguments.degree.is_some() && !bspline, "with --basis bspline only"),
+    ] {
+        if foreign {
+            let problem = "it means nothing to this basis".to_string();
+            return Err(Fault::Argument { argument, problem, allowed });
+        }
+    }
+    let half = half_length(arguments)?;
     let basis = match arguments.basis {
         BasisName::Linear => Basis::Linear,
         BasisName::Ugimp => Basis::Ugimp { half_length: [half; 3] },
+        BasisName::Gimp => Basis::Gimp { half_length: [half; 3] },
         BasisName::Ddmp => Basis::Ddmp,
         BasisName::Bspline => Basis::BSpline(arguments.degree.unwrap_or(Degree::Quadratic)),
         BasisName::Lme => Basis::Lme {
@@ -151,7 +163,9 @@ fn shape(arguments: &ShapeArguments) -> Result<(), Fault> {
         |path: &Path| Points::read(&path.display().to_string(), open(path)?, &points::COORDINATES);
     let (nodes, points) = (read(&arguments.nodes)?, read(&arguments.points)?);
     let needs_grid = arguments.support == Some(Support::Box);
-    print_bytes(&points::shape_at(&basis, needs_grid, spacing, &nodes, &points)?)
+    let stretch = gimp.then(|| arguments.stretch.unwrap_or(1.0));
+    let asked = points::ShapeQuery { basis, needs_grid, spacing, stretch };
+    print_bytes(&points::shape_at(&asked, &nodes, &points)?)
 }
 
 fn trace(

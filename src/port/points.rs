@@ -112,6 +112,17 @@ pub fn exact_at(scene: &Scene, name: &str, input: impl Read) -> Result<Vec<u8>, 
 /// Nodes and points for `shape` have these coordinates.
 pub const COORDINATES: [&[&str]; 3] = [&["x"], &["x", "y"], &["x", "y", "z"]];
 
+/// What is asked of a basis at points.
+pub struct ShapeQuery {
+    pub basis: Basis,
+    /// Only a full grid of nodes will do.
+    pub needs_grid: bool,
+    /// h, the spacing of the nodes (m).
+    pub spacing: f64,
+    /// How far the particles of GIMP have stretched, along each axis; `None` with the others.
+    pub stretch: Option<f64>,
+}
+
 /// Writes `point,node,N,dN_dx[,dN_dy[,dN_dz]]` of a basis with the given nodes and
 /// spacing (m), points and nodes counted from 0, nodes outside the support left
 /// out. `half_length` of [`Basis::Ugimp`] is in units of the spacing.
@@ -122,13 +133,7 @@ pub const COORDINATES: [&[&str]; 3] = [&["x"], &["x", "y"], &["x", "y", "z"]];
 ///
 /// Errors: [`Fault::Points`] with the line of a point that the basis cannot
 /// serve, or of a node that is not on a regular grid where the basis needs one.
-pub fn shape_at(
-    basis: &Basis,
-    needs_grid: bool,
-    spacing: f64,
-    nodes: &Points,
-    points: &Points,
-) -> Result<Vec<u8>, Fault> {
+pub fn shape_at(asked: &ShapeQuery, nodes: &Points, points: &Points) -> Result<Vec<u8>, Fault> {
     if nodes.rows.is_empty() {
         let allowed = "at least one node".to_string();
         return Err(nodes.fault(0, "there are no nodes".to_string(), allowed));
@@ -139,32 +144,31 @@ pub fn shape_at(
         return Err(points.fault(0, problem, allowed));
     }
     match nodes.dimension() {
-        1 => shape_in::<1>(basis, needs_grid, spacing, nodes, points),
-        2 => shape_in::<2>(basis, needs_grid, spacing, nodes, points),
-        _ => shape_in::<3>(basis, needs_grid, spacing, nodes, points),
+        1 => shape_in::<1>(asked, nodes, points),
+        2 => shape_in::<2>(asked, nodes, points),
+        _ => shape_in::<3>(asked, nodes, points),
     }
 }
 
 fn shape_in<const D: usize>(
-    basis: &Basis,
-    needs_grid: bool,
-    spacing: f64,
+    ShapeQuery { basis, needs_grid, spacing, stretch }: &ShapeQuery,
     nodes: &Points,
     points: &Points,
 ) -> Result<Vec<u8>, Fault> {
     let (place, x) = (nodes.vectors::<D>(), points.vectors::<D>());
+    let stretch = vec![SVector::repeat(stretch.unwrap_or(1.0)); stretch.map_or(0, |_| x.len())];
     let (mut shape, mut scratch) = (Shape::default(), Scratch::default());
     let mut lambda = vec![Multiplier::default(); x.len()];
-    let (file_node, done) = match regular_grid(spacing, nodes, &place) {
+    let (file_node, done) = match regular_grid(*spacing, nodes, &place) {
         Ok(Regular { grid, lowest, file_node }) => {
             let x: Vec<_> = x.iter().map(|x| x - lowest).collect();
-            let x = Extents::unstretched(&x);
+            let x = Extents { x: &x, stretch: &stretch };
             let done = fill_from_grid(&mut shape, &mut scratch, &mut lambda, basis, &grid, x);
             (file_node, done)
         }
-        Err(fault) if needs_grid || basis.width().is_none() => return Err(fault),
+        Err(fault) if *needs_grid || basis.width().is_none() => return Err(fault),
         Err(_) => {
-            let nodes = Places { x: &place, h: &SVector::repeat(spacing) };
+            let nodes = Places { x: &place, h: &SVector::repeat(*spacing) };
             let done = fill_from_nodes(&mut shape, &mut scratch, &mut lambda, basis, nodes, &x);
             ((0..place.len()).collect(), done)
         }
@@ -199,6 +203,11 @@ fn unserved(points: &Points, breakdown: Breakdown) -> Fault {
             n,
             format!("point {n} stands outside the grid of nodes"),
             "a point inside the grid; give it nodes around it, or move it",
+        ),
+        Breakdown::Domain { particle: n, cells, .. } => (
+            n,
+            format!("the domain of a particle at point {n} would be {cells} cells long"),
+            "--half-length times --stretch above 0 and at most --spacing",
         ),
         other => {
             (0, other.to_string(), "a point and nodes whose distance over --spacing is finite")
