@@ -256,7 +256,7 @@ fn front(rows: &[&Judged]) -> Vec<(String, f64, f64)> {
 /// with two particles in each, they lie three powers of ten apart. The fronts are those of the table. Across cells GIMP has less
 /// than a fiftieth of uGIMP's error for its work to a hundredth, implicit GIMP a fifth of that for twice the
 /// work, and OTM half of that again. A stress by moving least squares takes the error of lumped B-splines to less than a
-/// hundredth, for thirty times the work. Local max-ent with the consistent matrix alone is on both fronts beside
+/// hundredth, for more than twenty times the work. Local max-ent with the consistent matrix alone is on both fronts beside
 /// the cheapest.
 #[test]
 fn methods_have_these_fronts() {
@@ -288,7 +288,7 @@ fn methods_have_these_fronts() {
     assert!(implicit.0 < 0.2 * stretched.0 && implicit.1 < 2.0 * stretched.1);
     assert!(otm.0 < 0.5 * implicit.0, "{otm:?} {implicit:?}");
     let [sum, fitted] = ["B-spline 2 lumped", "B-spline 2 + MLS 2 lumped"].map(across);
-    assert!(fitted.0 < 0.01 * sum.0 && fitted.1 > 30.0 * sum.1, "{fitted:?} {sum:?}");
+    assert!(fitted.0 < 0.01 * sum.0 && fitted.1 > 20.0 * sum.1, "{fitted:?} {sum:?}");
     let mut table = String::from("motion,method,velocity error,work [million]\n");
     for (motion, front) in ["bar", "across cells"].iter().zip(&fronts) {
         for (name, error, work) in front {

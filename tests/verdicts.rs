@@ -317,7 +317,7 @@ fn verdicts_are_the_same_twice() {
     );
 }
 
-/// The weights of the work meet the instructions that they were fitted to: three of four runs to a
+/// The weights of the work meet the instructions that they were fitted to: four of five runs to a
 /// fifth, the worst to two thirds.
 #[test]
 fn work_is_near_to_instructions() {
@@ -339,6 +339,6 @@ fn work_is_near_to_instructions() {
     };
     let mut off: Vec<f64> = reader.records().map(off).collect();
     off.sort_by(f64::total_cmp);
-    assert!(off.len() > 100 && off[off.len() * 3 / 4] < 0.2, "{off:?}");
+    assert!(off.len() > 100 && off[off.len() * 4 / 5] < 0.2, "{off:?}");
     assert!(off[off.len() - 1] < 0.667, "{off:?}");
 }

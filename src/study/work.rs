@@ -9,9 +9,7 @@ use crate::method::cost::Cost;
 /// through all pairs of its table.
 ///
 /// The weights come from a fit to the runs in `data/instructions/work.csv`, which the book's chapter
-/// "Accuracy against cost" describes. Three of four are met to a fifth, the worst one to two thirds. Where forces are
-/// reconstructed, rows and pairs are those of Gauss's points as well, so that a consistent matrix counts for
-/// more than it takes, by a third of the run.
+/// "Accuracy against cost" describes. Four of five are met to a fifth, the worst one to two thirds.
 ///
 /// Test: `work_is_near_to_instructions` in `tests/verdicts.rs`.
 pub fn work(cost: &Cost) -> f64 {
@@ -20,15 +18,15 @@ pub fn work(cost: &Cost) -> f64 {
     let matrix = if cost.factorizations > 0 { pairs * pairs / rows.max(1.0) } else { 0.0 };
     let tangents = cost.tangents as f64 * pairs / steps.max(1.0);
     let solves = cost.solves as f64 * rows / steps.max(1.0);
-    3600.0 * steps
-        + 350.0 * rows
-        + 133.0 * pairs
-        + 373.0 * cost.newton_iterations as f64
-        + 287.0 * cost.candidates as f64
-        + 156.0 * matrix
-        + 362.0 * solves
-        + 250.0 * cost.filtered_stresses as f64
-        + 1800.0 * cost.fitted_stresses as f64
-        + 1250.0 * tangents
+    700.0 * steps
+        + 430.0 * rows
+        + 140.0 * pairs
+        + 310.0 * cost.newton_iterations as f64
+        + 280.0 * cost.candidates as f64
+        + 66.0 * matrix
+        + 330.0 * solves
+        + 330.0 * cost.filtered_stresses as f64
+        + 1500.0 * cost.fitted_stresses as f64
+        + 1100.0 * tangents
 }
 // ANCHOR_END: weights

@@ -29,25 +29,33 @@ impl std::fmt::Display for Case {
     }
 }
 
-/// A block of cells of size 1, free on all sides, with two particles along each axis of a cell;
-/// half of it is thrown against the other.
+/// A block of many cells.
 pub fn scene<const D: usize>(case: Case) -> Scene {
-    let list = |entries: [&str; D]| format!("[{}]", entries.join(","));
-    let cells = list(std::array::from_fn(|_| ["400", "20", "8"][D - 1]));
-    let first = |x: &'static str| list(std::array::from_fn(|d| if d == 0 { x } else { "0" }));
-    let half = ["200", "10", "4"][D - 1];
-    let text = format!(
+    let text = block::<D>([400, 20, 8][D - 1]);
+    let sets: Vec<String> = case.sets.iter().map(|set| set.to_string()).collect();
+    run::parse("block", "block.toml", &text, &sets).unwrap_or_else(|fault| panic!("{fault}"))
+}
+
+/// The scene of a block of `n` cells of size 1 along each axis, free on all sides, with two particles along each axis of a cell;
+/// half of it is thrown against the other.
+pub fn block<const D: usize>(n: usize) -> String {
+    let list = |entries: [usize; D]| format!("{entries:?}");
+    let cells = list([n; D]);
+    let first = |x: String| {
+        let entries: Vec<String> =
+            (0..D).map(|d| if d == 0 { x.clone() } else { "0".to_string() }).collect();
+        format!("[{}]", entries.join(","))
+    };
+    format!(
         "title = 'block'\nmethod = 'mpm'\nmass = 'lumped'\nbasis.kind = 'linear'\n\
          body = {{ length = {cells}, density = 1, youngs_modulus = 1, poisson_ratio = 0.3 }}\n\
          grid = {{ cells = {cells}, particles_per_cell = {} }}\n\
          time = {{ integrator = 'newmark', cfl = 0.2, end = 1000 }}\n\
          [[initial_velocity]]\nfrom = {}\nto = {cells}\nvelocity = {}\n",
-        list(["2"; D]),
-        first(half),
-        first("-1e-3"),
-    );
-    let sets: Vec<String> = case.sets.iter().map(|set| set.to_string()).collect();
-    run::parse("block", "block.toml", &text, &sets).unwrap_or_else(|fault| panic!("{fault}"))
+        list([2; D]),
+        first((n / 2).to_string()),
+        first("-1e-3".to_string()),
+    )
 }
 
 /// The block after ten steps: every array has its size, and every particle has moved.
