@@ -113,6 +113,8 @@ fn locking_of_a_cantilever() {
         ("linear", &["basis.kind=linear"][..]),
         ("linear with 1 per cell", &["basis.kind=linear", "grid.particles_per_cell=[1,1]"]),
         ("uGIMP", &["basis.kind=ugimp"]),
+        ("GIMP", &["basis.kind=gimp"]),
+        ("dual domain", &["basis.kind=ddmp"]),
         ("B-spline", &["basis.kind=bspline"]),
         ("cubic B-spline", &["basis.kind=bspline", "basis.degree=3"]),
         ("LME 0.8", &["basis.kind=lme", "basis.gamma=0.8"]),

@@ -120,9 +120,13 @@ impl Basis {
                 },
                 ..smooth
             },
-            Basis::Ddmp => {
-                Traits { pushes_light_nodes: true, along: 4.0, lists_rows: true, ..smooth }
-            }
+            Basis::Ddmp => Traits {
+                pushes_light_nodes: true,
+                along: 4.0,
+                lists_rows: true,
+                locks_from: 0.49,
+                ..smooth
+            },
         }
     }
 
