@@ -106,8 +106,9 @@ fn displace<const D: usize>(state: &mut State<D>, moved: &Moved<D>) {
         if let Some(stretch) = particle.stretch.get_mut(p) {
             *stretch = F.diagonal();
         }
-        if let (Some(A_p), Some(inverse)) = (particle.pull.get_mut(p), F.try_inverse()) {
-            *A_p = inverse;
+        if let Some(A_p) = particle.pull.get_mut(p) {
+            // No scene has a motion without one; the first table would refuse what is no number.
+            *A_p = F.try_inverse().unwrap_or(SMatrix::repeat(f64::NAN));
         }
         if let Some(F_p) = particle.F.get_mut(p) {
             *F_p = F;
