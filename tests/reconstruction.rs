@@ -418,6 +418,7 @@ fn reconstruction_has_a_measured_limit() {
             let sum = dyka(&[&sets[..plain], mass.sets, &cells].concat());
             let fitted = dyka(&[sets, mass.sets, &cells].concat());
             let limit = stability::predicted(&sum, 0.2).unwrap();
+            assert_eq!(stability::predicted(&fitted, 0.2).unwrap(), f64::INFINITY);
             let marched = stability::measured(&fitted, 0.2, limit, 2000, 2e-3).unwrap();
             let courant = wave_speed(&fitted.body) * 10.0 / 0.1333;
             let [marched, limit] = [marched, limit].map(|dt| dt * courant);

@@ -90,9 +90,12 @@ fn report(write: bool) -> ExitCode {
     if write {
         return written(&[("time-step.csv", whole), ("nine-steps.csv", steps)]);
     }
-    match whole.and_then(|whole| Ok(print!("{whole}\n{}", steps?))) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => uncounted(&error),
+    match (whole, steps) {
+        (Ok(whole), Ok(steps)) => {
+            print!("{whole}\n{steps}");
+            ExitCode::SUCCESS
+        }
+        (Err(error), _) | (_, Err(error)) => uncounted(&error),
     }
 }
 

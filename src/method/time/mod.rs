@@ -1,5 +1,5 @@
 //! Time integration (§4) is a sequence of steps; each scheme is a function of the number of its
-//! step, in a file of its own, and one line of [`scheme`].
+//! step, in a file of its own, and one line of [`scheme()`].
 
 pub mod deformation;
 pub mod equilibrium;

@@ -68,7 +68,7 @@ impl Critical {
 }
 
 /// Predicts the limit of Δt of a scene; where its particles move, over all offsets. Infinite for
-/// implicit schemes.
+/// implicit schemes, and for reconstructed forces, whose limit is not predicted.
 ///
 /// Errors: [`Breakdown`] of the first table, or of a singular mass matrix.
 pub fn critical(scene: &Scene) -> Result<Critical, Breakdown> {
@@ -101,12 +101,16 @@ pub fn runnable(scene: &Scene) -> Result<Option<Critical>, Fault> {
 }
 
 /// Finds the largest stable Δt (s) of a tabulated state with masses, by Lanczos's method.
-/// Infinite for a body that nothing can strain.
+/// Infinite for a body that nothing can strain, for implicit schemes, and for reconstructed forces,
+/// whose limit is not predicted.
 pub fn limit<const D: usize>(state: &mut State<D>, model: &Model<D>) -> f64 {
     limit_to(FINE, state, model)
 }
 
 fn limit_to<const D: usize>(tolerance: f64, state: &mut State<D>, model: &Model<D>) -> f64 {
+    if model.reconstruction.is_some() {
+        return f64::INFINITY;
+    }
     let mut random = noise();
     let count = state.particle.len();
     let start = (0..count).map(|_| symmetric_part(&SMatrix::from_fn(|_, _| random()))).collect();
