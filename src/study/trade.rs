@@ -42,7 +42,9 @@ const GIMP: &str = "basis.kind=gimp";
 const LME_0_8: &str = "basis.kind=lme basis.gamma=0.8";
 const LME_0_8_SHORT: &str = "basis.kind=lme basis.gamma=0.8 basis.cutoff=0.01";
 const LME_1_8: &str = "basis.kind=lme basis.gamma=1.8";
+const LME_1_8_UPDATED: &str = "basis.kind=lme basis.gamma=1.8 basis.metric=updated";
 const LME_4: &str = "basis.kind=lme basis.gamma=4";
+const LME_4_UPDATED: &str = "basis.kind=lme basis.gamma=4 basis.metric=updated";
 const LME_6: &str = "basis.kind=lme basis.gamma=6";
 
 const QUICK: Sweep = Sweep {
@@ -139,7 +141,8 @@ fn mpm(sweep: &Sweep) -> Vec<Traded> {
 /// limit.
 fn otm(sweep: &Sweep) -> Vec<Traded> {
     let mut all = Vec::new();
-    for basis in [LME_0_8, LME_1_8, LME_4, LME_6] {
+    let updated: &[&str] = if sweep.crossed { &[LME_1_8_UPDATED, LME_4_UPDATED] } else { &[] };
+    for basis in [LME_0_8, LME_1_8, LME_4, LME_6].iter().chain(updated) {
         for particles_per_cell in if sweep.crossed { 1..=2 } else { 1..=1 } {
             for step in [Common(0.5), PartOfLimit(0.95)] {
                 let parts = format!("mass=lumped {basis} {NEWMARK}");
