@@ -290,8 +290,8 @@ const CURES: [Way; 7] = [
 
 /// What cures of crossing do on the bar. The dual domain with the consistent matrix has less than two
 /// thirds of the linear basis's error on 40 to 160 cells, and does not fall from 80 to 640, to a
-/// twelfth. A stress by moving least squares is ahead of the sum over particles by a tenth and more on
-/// 40 to 160 cells and level on 320; on 640 its energy grows beyond what `check.energy` allows, and
+/// twelfth. A stress by moving least squares is ahead of the sum over particles by a twelfth and more on
+/// 40 to 160 cells, by a fourteenth on 320; on 640 its energy grows beyond what `check.energy` allows, and
 /// the run ends. Implicit steps two and a half times as long cost nothing in accuracy: a twentieth to a
 /// seventh less error than the explicit ones.
 #[test]

@@ -7,7 +7,7 @@ use kuva::prelude::MarkerShape;
 use lme_mpm::method::basis::{Basis, Degree};
 use lme_mpm::method::continuum::state::{Nodes, Particles};
 use lme_mpm::method::continuum::sums;
-use lme_mpm::method::grid::{Grid, Located, odometer};
+use lme_mpm::method::grid::{Grid, odometer};
 use lme_mpm::method::measure::observed_order;
 use lme_mpm::method::quadrature::gauss;
 use lme_mpm::method::reconstruction::{
@@ -41,15 +41,20 @@ fn scattered<const D: usize>(per_cell: usize) -> (Grid<D>, Particles<D>) {
 }
 
 /// Shows `each` every cell of such a body, with Gauss's points of B-splines.
-fn cells<const D: usize>(grid: &Grid<D>, particle: &Particles<D>, mut each: impl FnMut(&Cell<D>)) {
-    let mut inside: Vec<Vec<(usize, Located<D>)>> = vec![Vec::new(); grid.nodes()];
-    for (p, x) in particle.x.iter().enumerate() {
-        let at = grid.locate(x).unwrap();
-        inside[grid.node(at.cell)].push((p, at));
-    }
-    let points = points::<D>(Piecewise::BSpline(Degree::Quadratic));
+fn cells<const D: usize>(grid: &Grid<D>, particle: &Particles<D>, each: impl FnMut(&Cell<D>)) {
+    cells_at(&points::<D>(Piecewise::BSpline(Degree::Quadratic)), grid, particle, each);
+}
+
+/// Shows `each` every cell with a list of points.
+fn cells_at<const D: usize>(
+    points: &[(SVector<f64, D>, f64)],
+    grid: &Grid<D>,
+    particle: &Particles<D>,
+    mut each: impl FnMut(&Cell<D>),
+) {
+    let inside = particle.by_cell(grid);
     for index in odometer(grid.cells) {
-        each(&Cell { index, points: &points, grid, particle, inside: &inside });
+        each(&Cell { index, points, grid, particle, inside: &inside });
     }
 }
 
@@ -467,25 +472,18 @@ fn figure_of_fits() {
     let wave = |x: f64| libm::sin(4.0 * x);
     let noisy = |x: &SVector<f64, 1>| SMatrix::repeat(wave(x[0]) + 0.2 * random());
     particle.sigma = particle.x.iter().map(noisy).collect();
-    let mut inside: Vec<Vec<(usize, Located<1>)>> = vec![Vec::new(); grid.nodes()];
-    for (p, x) in particle.x.iter().enumerate() {
-        let at = grid.locate(x).unwrap();
-        inside[grid.node(at.cell)].push((p, at));
-    }
     let points: Vec<(SVector<f64, 1>, f64)> =
         (0..=20).map(|n| (SVector::from([n as f64 / 10.0 - 1.0]), 0.0)).collect();
     let (mut pieces, mut smooth) = (Vec::new(), Vec::new());
-    for index in odometer(grid.cells) {
-        let particle = &particle;
-        let cell = Cell { index, points: &points, grid: &grid, particle, inside: &inside };
-        let places: Vec<f64> = places(&cell).iter().map(|x| x[0]).collect();
-        let fitted = [tls::stress(&cell, 1, &mut 0), mls::stress(&cell, 2, &mut 0)];
+    cells_at(&points, &grid, &particle, |cell| {
+        let places: Vec<f64> = places(cell).iter().map(|x| x[0]).collect();
+        let fitted = [tls::stress(cell, 1, &mut 0), mls::stress(cell, 2, &mut 0)];
         let [piece, part] = fitted.map(|sigma| {
             places.iter().zip(sigma).map(|(x, sigma)| (*x, sigma[0])).collect::<Vec<_>>()
         });
         pieces.push(piece);
         smooth.extend(part);
-    }
+    });
     let off = |line: &[(f64, f64)]| {
         let sum: f64 = line.iter().map(|(x, sigma)| (sigma - wave(*x)).powi(2)).sum();
         (sum / line.len() as f64).sqrt()
